@@ -1,11 +1,15 @@
 """The values that the screening tries."""
 
 import numpy as np
+import pytest
 
+from tests.straight_path import straight_path
 from vibroimpact.diagnosis.bench import holding_lines
-from vibroimpact.diagnosis.catalogue import far_terms, locations
+from vibroimpact.diagnosis.catalogue import far_terms, halfway, locations
 from vibroimpact.diagnosis.explanations import Point, Term
 from vibroimpact.effects.registry import EFFECTS
+
+TUBE = {"kind": "tube", "outer_diameter_m": 0.02, "wall_thickness_m": 0.001}
 
 
 def test_every_effect_has_trials_that_can_be_run(comparison):
@@ -25,3 +29,29 @@ def test_values_that_make_no_model_have_no_lines(comparison):
     plate = Term("plate_flexibility", "left", (1.0e5, 0.4, 0.9))  # no fraction of critical damping
     lines = holding_lines(comparison.screened(), [Point((plate,)), Point((plate,))])
     assert lines.shape[:2] == (2, 2) and np.isnan(lines).all()
+
+
+@pytest.mark.parametrize(
+    ("term", "expected"),
+    [
+        (
+            Term("added_mass", "arc_300_0mm", (0.1,)),
+            [("arc_287_5mm", (0.1,)), ("arc_312_5mm", (0.1,))],
+        ),
+        (
+            Term("preload", "all", (1.0, 0.0)),
+            [("all", (0.924, -0.383)), ("all", (0.924, 0.383))],
+        ),
+        (
+            Term("foliate_lands", "all", (0.0,)),
+            [("all", (1.374,)), ("all", (0.196,))],
+        ),
+        (Term("gap", "left", (2.0,)), []),
+    ],
+)
+def test_terms_half_way_to_the_next(term, expected):
+    tube = {"structure": straight_path(0.5, [0.0, 0.0, 1.0], TUBE, (2.0e11, 0.3, 8000.0))}
+    found = [(each.location, each.values) for each in halfway(term, tube, 20)]
+    assert [place for place, _ in found] == [place for place, _ in expected]
+    for (_, own), (_, wanted) in zip(found, expected, strict=True):
+        assert own == pytest.approx(wanted, abs=1e-3)

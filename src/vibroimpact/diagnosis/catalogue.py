@@ -25,6 +25,8 @@ AT_A_POINT = (
 )
 PLACES = 8  # along a tube, for a law that acts at a point; the place is fitted from there
 ACROSS_DEG = 90.0
+WAYS, TURNS = 8, 4  # directions of an offset, angles within a lobe
+LOBES = {"foliate_lands": 4, "foliate_obstacle": 4, "foliate_trefoil": 3, "foliate_hexafoil": 6}
 ALL_FIRST = ("foliate_trefoil", "foliate_hexafoil", "hertz")  # tried at all supports alone
 # Logarithm of a factor, within which two good codes of one structure differ: two standard
 # deviations of the priors, and what models in which nothing is hidden were off by on development
@@ -41,14 +43,14 @@ LATE_SAMPLES = 0.25  # of a delay that is named
 
 
 def _ways(*sizes: float) -> list[tuple[float, float]]:
-    """Return vectors of some sizes in eight directions."""
-    angles = np.arange(8) * np.pi / 4
+    """Return vectors of some sizes in WAYS directions."""
+    angles = np.arange(WAYS) * 2.0 * np.pi / WAYS
     return [(size * np.cos(angle), size * np.sin(angle)) for size in sizes for angle in angles]
 
 
-def _turned(count: int, *before: float) -> list[tuple[float, ...]]:
-    """Return values before an angle, which takes four values within a lobe of so many."""
-    return [(*before, turn * 2.0 * np.pi / count / 4) for turn in range(4)]
+def _turned(effect_id: str, *before: float) -> list[tuple[float, ...]]:
+    """Return values before an angle, which takes TURNS values within a lobe."""
+    return [(*before, turn * 2.0 * np.pi / LOBES[effect_id] / TURNS) for turn in range(TURNS)]
 
 
 # Multiples of the sizes of the parameters (see effects.effect.SCALES), far from where the effect
@@ -70,10 +72,10 @@ FAR: dict[str, Sequence[tuple[float, ...]]] = {
     "saturation_stiffness": [(2.0, 1.0)],
     "clearance": [(0.2, 4.0), (0.6, 4.0)],
     "one_sided_stop": [(0.2, 4.0), (0.5, 4.0), (1.0, 4.0)],
-    "foliate_lands": _turned(4),
-    "foliate_obstacle": _turned(4, 0.6),
-    "foliate_trefoil": _turned(3, 0.6),
-    "foliate_hexafoil": _turned(6, 0.6),
+    "foliate_lands": _turned("foliate_lands"),
+    "foliate_obstacle": _turned("foliate_obstacle", 0.6),
+    "foliate_trefoil": _turned("foliate_trefoil", 0.6),
+    "foliate_hexafoil": _turned("foliate_hexafoil", 0.6),
 }
 
 
@@ -106,16 +108,21 @@ def _count(effect_id: str, places: int) -> int:
 
 
 def halfway(term: Term, values: Values, places: int) -> list[Term]:
-    """Return a term half way to the places on its two sides, see `locations`; none where its place
-    has a name.
+    """Return a term half way to those that are tried on its two sides: to the next places along a
+    tube, the next directions or the next angles of lobes; none where it has no such neighbours.
     """
+    if term.effect_id in ("support_offset", "preload"):
+        whole = complex(*term.values) * np.exp(np.array([-0.5j, 0.5j]) * 2.0 * np.pi / WAYS)
+        return [replace(term, values=(float(own.real), float(own.imag))) for own in whole]
+    if term.effect_id in LOBES:
+        lobe, angle = 2.0 * np.pi / LOBES[term.effect_id], term.values[-1]
+        beside = [(angle + own * lobe / TURNS) % lobe for own in (-0.5, 0.5)]
+        return [replace(term, values=(*term.values[:-1], float(own))) for own in beside]
     at, length = on_structure.arc_length_m(term.location), on_structure.length_m(values)
     if at is None or length is None or term.effect_id not in AT_A_POINT:
         return []
-    half, turned = (
-        0.5 * length / _count(term.effect_id, places),
-        on_structure.turned_deg(term.location),
-    )
+    half = 0.5 * length / _count(term.effect_id, places)
+    turned = on_structure.turned_deg(term.location)
     return [
         replace(term, location=on_structure.between(beside, turned))
         for beside in (at - half, at + half)

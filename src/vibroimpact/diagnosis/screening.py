@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vibroimpact.effects.effect import Effect
-from vibroimpact.effects.places import arc_length_m
 
 from .bench import Bench, holding_lines, misfit, whitening
 from .catalogue import far_terms, halfway, locations, neutral_term, parts
@@ -22,7 +21,7 @@ HIGHEST = slice(-1, None)  # of the stretches
 AT_A_TIME = 64  # points whose lines are held in memory
 TRIED = 12  # of the points that derivatives predict
 KEPT, FEWEST_KEPT = 0.3, 40  # of the points: those that are tried on all stretches
-BETWEEN = 8  # of the best points along a tube, beside which places half way are tried
+BETWEEN = 8  # of the best points, beside which those half way to the next are tried
 FARTHEST_STEP = 1.5  # of a coordinate, from where the effect does nothing
 
 
@@ -73,7 +72,7 @@ def screen(
     lines = holding_lines(bench, [base])[0]
     near = [point for point, _ in predicted(bench.on(HIGHEST), lines[HIGHEST], neutral, sizes)]
     ranked = _ranked(bench, lines, far + near[:TRIED])
-    ranked = _with_places_between(bench, lines, ranked, along)
+    ranked = _with_halfway(bench, lines, ranked, along)
     ran = {_last(point) for point in near}
     ran |= {_last(each.point) for each in ranked if np.isfinite(each.gain)}
     failed = {_last(point) for point in far + neutral} - ran
@@ -98,20 +97,20 @@ def _ranked(bench: Bench, lines: np.ndarray, points: Sequence[Point]) -> list[Sc
     return [Screened(points[at], float(gains[at])) for at in (*kept, *left)]
 
 
-def _with_places_between(
+def _with_halfway(
     bench: Bench, lines: np.ndarray, ranked: Sequence[Screened], along: int
 ) -> list[Screened]:
-    """Return Screened with the places half way to their neighbours of those that gain most: a gain
-    may lie within a quarter of a wave, and that between two places.
+    """Return Screened with the terms half way to the neighbours of those that gain most: a gain may
+    lie within a quarter of a wave, or a few degrees, and that between two trials.
     """
-    values = bench.structure.values
-    leading = [
-        each.point for each in ranked if arc_length_m(each.point.terms[-1].location) is not None
-    ][:BETWEEN]
+    beside = [
+        (each.point, halfway(each.point.terms[-1], bench.structure.values, along))
+        for each in ranked
+    ]
     tried = {
-        (term.name, term.values): replace(each, terms=(*each.terms[:-1], term))
-        for each in leading
-        for term in halfway(each.terms[-1], values, along)
+        (term.name, term.values): replace(point, terms=(*point.terms[:-1], term))
+        for point, terms in [pair for pair in beside if pair[1]][:BETWEEN]
+        for term in terms
     }
     points = list(tried.values())
     gains = _gains(bench, lines, points)
