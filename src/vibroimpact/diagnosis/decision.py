@@ -19,6 +19,7 @@ from vibroimpact.verdict.misfit import makes_worse
 from . import constants
 from .search import Hypothesis, Search
 
+NULL_WIDTHS = 4.0  # e-folds of the odds of nothing between no gain and NULL_GAIN
 EXACT_ALIASES = {  # what no measurement of this kind can tell apart
     "gap@all": ("sensor_gain@force_and_responses", "sensor_gain"),
     "sensor_gain@force_and_responses": ("gap@all", "gap"),
@@ -77,7 +78,8 @@ def decide(search: Search, level: float, floor: float) -> Decision:
     best = float(gains[0]) if gains.size else 0.0
     rest = level - floor if np.isfinite(floor) else 0.0
     unexplained = float(expit((rest - constants.REST) / constants.REST_WIDTH))
-    no_effect = float(expit((constants.NULL_GAIN - best) / constants.RIVAL))
+    sure = max(map(sure_gain, hypotheses), default=0.0)
+    no_effect = float(expit(NULL_WIDTHS * (1.0 - sure / constants.NULL_GAIN)))
     nothing = no_effect * (1.0 - unexplained)
     share = max(best, 0.0) / max(best + max(rest, 0.0), 1.0e-12)
     width = constants.RIVAL + constants.RIVAL_SHARE * max(best, 0.0)
@@ -95,7 +97,7 @@ def decide(search: Search, level: float, floor: float) -> Decision:
 
 def gains(search: Search) -> bool:
     """Return whether some hypothesis of a Search gains more than nothing does."""
-    return max(map(worth, search.hypotheses), default=0.0) > constants.NULL_GAIN
+    return max(map(sure_gain, search.hypotheses), default=0.0) > constants.NULL_GAIN
 
 
 def far_off(misfit: Mapping[str, float | None]) -> bool:
@@ -164,6 +166,13 @@ def refuted(decision: Decision, in_favour_of_nothing: bool = False) -> Decision:
     if in_favour_of_nothing and decision.something_else < 0.5:
         return replace(left, verdict="none", nothing=decision.nothing + chance)
     return replace(left, verdict="unknown", something_else=decision.something_else + chance)
+
+
+def sure_gain(hypothesis: Hypothesis) -> float:
+    """Return the gain that a hypothesis has at least, by two standard errors: that in a few bands
+    is as sure as that in many.
+    """
+    return min(hypothesis.apart - 2.0 * hypothesis.error, hypothesis.gain)
 
 
 def worth(hypothesis: Hypothesis) -> float:

@@ -17,9 +17,8 @@ from .coordinates import Coordinate, bounds, effect_coordinates, to_point, to_ve
 from .explanations import Point, Term
 from .sensor_starts import sensor_terms
 
-HIGHEST = slice(-1, None)  # of the stretches
 AT_A_TIME = 64  # points whose lines are held in memory
-TRIED = 12  # of the points that derivatives predict
+TRIED = 12  # of the points that derivatives predict, on each stretch
 KEPT, FEWEST_KEPT = 0.3, 40  # of the points: those that are tried on all stretches
 BETWEEN = 8  # of the best points, beside which those half way to the next are tried
 FARTHEST_STEP = 1.5  # of a coordinate, from where the effect does nothing
@@ -70,13 +69,26 @@ def screen(
         base.beside(term) for each in places if (term := neutral_term(*each, sizes)) is not None
     ]
     lines = holding_lines(bench, [base])[0]
-    near = [point for point, _ in predicted(bench.on(HIGHEST), lines[HIGHEST], neutral, sizes)]
-    ranked = _ranked(bench, lines, far + near[:TRIED])
+    near = _near(bench, lines, neutral, sizes)
+    ranked = _ranked(bench, lines, far + [point for own in near for point in own[:TRIED]])
     ranked = _with_halfway(bench, lines, ranked, along)
-    ran = {_last(point) for point in near}
+    ran = {_last(point) for own in near for point in own}
     ran |= {_last(each.point) for each in ranked if np.isfinite(each.gain)}
     failed = {_last(point) for point in far + neutral} - ran
     return Screening(tuple(ranked), tuple(sorted(failed)))
+
+
+def _near(
+    bench: Bench, lines: np.ndarray, neutral: Sequence[Point], sizes: Mapping[str, float]
+) -> list[list[Point]]:
+    """Return the Points that derivatives predict on each stretch, best first."""
+    out = []
+    for number in range(len(bench.stretches)):
+        own = slice(number, number + 1)
+        points = [point for point in neutral if _first(bench, point) == number]
+        found = predicted(bench.on(own), lines[own], points, sizes)
+        out.append([point for point, _ in found])
+    return out
 
 
 def _last(point: Point) -> str:
@@ -85,16 +97,34 @@ def _last(point: Point) -> str:
 
 
 def _ranked(bench: Bench, lines: np.ndarray, points: Sequence[Point]) -> list[Screened]:
-    """Return Screened of points, best first: all are tried on the last stretch, and those that
-    gain most there on the others. lines (stretch, channel, line): of the base.
+    """Return Screened of points, best first: all are tried on the stretch that shows them best, see
+    `_first`, and those that gain most there on the others. lines (stretch, channel, line): of the
+    base.
     """
-    gains = _gains(bench.on(HIGHEST), lines[HIGHEST], points)
+    gains = np.zeros(len(points))
+    stretches = np.arange(len(bench.stretches))
+    first = np.array([_first(bench, point) for point in points], int)
+    for own in stretches:
+        _add(gains, bench, lines, own, points, np.flatnonzero(first == own))
     order = np.argsort(-gains, kind="stable")
     kept, left = np.split(order, [max(round(KEPT * len(order)), FEWEST_KEPT)])
-    if len(bench.stretches) > 1:
-        gains[kept] += _gains(bench.on(slice(0, -1)), lines[:-1], [points[at] for at in kept])
-        kept = kept[np.argsort(-gains[kept], kind="stable")]
+    for own in stretches:
+        _add(gains, bench, lines, own, points, kept[first[kept] != own])
+    kept = kept[np.argsort(-gains[kept], kind="stable")]
     return [Screened(points[at], float(gains[at])) for at in (*kept, *left)]
+
+
+def _first(bench: Bench, point: Point) -> int:
+    """Return the number of the stretch on which the last term of a Point is tried first: the lowest
+    for a linear structure, whose changes impacts hide, the highest for all others.
+    """
+    return 0 if point.terms[-1].effect.linear else len(bench.stretches) - 1
+
+
+def _add(gains, bench, lines, stretch, points, which):
+    """Add the gains of points number `which` on a stretch to gains (point,)."""
+    own = slice(stretch, stretch + 1)
+    gains[which] += _gains(bench.on(own), lines[own], [points[at] for at in which])
 
 
 def _with_halfway(
