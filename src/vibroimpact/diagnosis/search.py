@@ -37,6 +37,7 @@ RACED, EXCHANGED, FINALISTS = 10, 4, 4
 PER_EFFECT = 2  # starts of one effect in a race: its place, or another value but its size
 ONE_PLACE = 0.05  # of a tube's length: fits that end nearer are one
 RIVALS = 0.3  # of the gain of the best in a race, from which others are finalists
+STRONGER = 4.0  # dampers of a race
 RACE_PASSES, FINAL_PASSES = 3, 12  # at most
 POLISHED, POLISHED_GAIN = 3, 0.01  # times at most, and the gain below which it ends
 MOST_EFFECTS = 2
@@ -178,35 +179,41 @@ def _screened(at: _Benches, base: Point) -> Screening:
     return screen(at.screened, base, others, own.sizes, own.across, own.along, demanded)
 
 
-def _race(at: _Benches, ranked: Sequence[Screened], beside: Point, most: int = RACED) -> list[Fit]:
-    """Return the Fits of the best screened points, best first, one of each effect and place.
+def _race(
+    at: _Benches, ranked: Sequence[Screened], beside: Point, most: int = RACED
+) -> list[Screened]:
+    """Return the best screened points after some passes of Gauss-Newton, best first, one of each
+    effect and place. Stronger dampers widen the basin in which these find the right place.
 
     beside: Point without their last term. most: that are raced.
     """
-    base = misfit(at.screened, holding_lines(at.screened, [beside])[0])
     chosen: dict[tuple, Point] = {}
     per_effect: dict[str, int] = {}
     for each in ranked:
         term = each.point.terms[-1]
-        start, starts = (term.name, *term.values[1:]), per_effect.get(term.effect_id, 0)
-        if start in chosen or starts == PER_EFFECT or not np.isfinite(each.gain):
+        start, count = (term.name, *term.values[1:]), per_effect.get(term.effect_id, 0)
+        if start in chosen or count == PER_EFFECT or not np.isfinite(each.gain):
             continue
-        per_effect[term.effect_id] = starts + 1
+        per_effect[term.effect_id] = count + 1
         chosen[start] = each.point
         if len(chosen) == most:
             break
-    fits = [
-        fit(at.screened, point, effect_coordinates(point.terms, at.comparison.sizes), RACE_PASSES)
-        for point in chosen.values()
+    strong = replace(at.screened, strength=STRONGER * at.screened.strength)
+    sizes, starts = at.comparison.sizes, list(chosen.values())
+    ends = [fit(strong, own, effect_coordinates(own.terms, sizes), RACE_PASSES) for own in starts]
+    points = [*starts, *(own.point for own in ends)]
+    base, *found = holding_lines(at.screened, [beside, *points])
+    now = misfit(at.screened, base)
+    raced = [
+        Screened(point, now - misfit(at.screened, own))
+        for point, own in zip(points, found, strict=True)
+        if not within_priors(point.terms[-1], at.comparison.signals.rate, sizes)
     ]
-    rate, sizes = at.comparison.signals.rate, at.comparison.sizes
-    apart = [each for each in fits if not within_priors(each.point.terms[-1], rate, sizes)]
-    apart.sort(key=lambda each: each.objective)
-    least = RIVALS * (base - apart[0].objective) if apart else 0.0
-    kept: dict[tuple, Fit] = {}
-    for own in apart:
-        if base - own.objective >= least:
-            kept.setdefault(_where(own.point.terms[-1], sizes["tube_length"]), own)
+    raced.sort(key=lambda each: -each.gain)
+    kept: dict[tuple, Screened] = {}
+    for each in raced:
+        if each.gain >= RIVALS * raced[0].gain:
+            kept.setdefault(_where(each.point.terms[-1], sizes["tube_length"]), each)
     return list(kept.values())
 
 
