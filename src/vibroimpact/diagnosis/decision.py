@@ -183,11 +183,12 @@ def worth(hypothesis: Hypothesis) -> float:
 
 
 def _superfluous(hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:
-    """Return whether some effects of a hypothesis alone gain about as much."""
+    """Return whether some effects of a hypothesis alone gain about as much, fitted or apart."""
     own = {term.effect_id for term in hypothesis.point.terms}
     return any(
         {term.effect_id for term in other.point.terms} < own
-        and worth(hypothesis) - worth(other) < constants.needed_gain(worth(other))
+        and min(hypothesis.apart - other.apart, hypothesis.gain - other.gain)
+        < constants.needed_gain(worth(other))
         for other in others
     )
 
