@@ -136,11 +136,15 @@ def remove_left_over(folders: Iterable[str | Path]) -> list[Path]:
 
 
 def process_lives(process: int) -> bool:
-    """Return whether a process of this machine is alive."""
+    """Return whether a process of this machine is alive. One that has ended and whose parent has
+    not asked for its exit status, as in a container without an init, is not.
+    """
     try:
         os.kill(process, 0)
     except ProcessLookupError:
         return False
     except (PermissionError, OverflowError):
         return True
+    with suppress(OSError):  # on Linux; the state follows the name, which may hold anything
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
     return True

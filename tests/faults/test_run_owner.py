@@ -5,15 +5,17 @@ import os
 import signal
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 from tests.tiny_study import ROOT
 from vibroimpact.study.run_owner import BOOT, FolderTaken, Owner, start_text, take_folder
-from vibroimpact.whole_file import HOST, remove_left_over, whole_file
+from vibroimpact.whole_file import HOST, process_lives, remove_left_over, whole_file
 
 PROGRAM = """
 import sys
+from pathlib import Path
 from vibroimpact.study.run_owner import take_folder
 killed = take_folder(sys.argv[1], ["/bin/snakemake", "-j1", "all"])
 print("taken" if killed is None else f"after {killed}", flush=True)
@@ -133,3 +135,13 @@ def test_a_run_says_that_it_continues_a_killed_one(tmp_path):
     killed, removed = start_text(owner, [tmp_path])
     assert killed.startswith("The last run was killed: process 12 on vm, begun 2026-01-01 10:00:00")
     assert removed == "1 temporary files of killed jobs are removed."
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").is_file(), reason="Linux tells states of processes")
+def test_a_process_that_has_ended_unasked_is_not_alive():
+    """A killed job stays in the table of processes until its parent asks for its exit status."""
+    child = subprocess.Popen([sys.executable, "-c", "pass"])
+    os.waitid(os.P_PID, child.pid, os.WEXITED | os.WNOWAIT)
+    assert not process_lives(child.pid)
+    child.wait()
+    assert process_lives(os.getpid())

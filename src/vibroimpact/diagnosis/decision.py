@@ -19,7 +19,7 @@ from vibroimpact.verdict.misfit import makes_worse
 from . import constants
 from .search import Hypothesis, Search
 
-NULL_WIDTHS = 4.0  # e-folds of the odds of nothing between no gain and NULL_GAIN
+NULL_WIDTHS = 6.0  # e-folds of the odds of nothing between no gain and NULL_GAIN
 EXACT_ALIASES = {  # what no measurement of this kind can tell apart
     "gap@all": ("sensor_gain@force_and_responses", "sensor_gain"),
     "sensor_gain@force_and_responses": ("gap@all", "gap"),
