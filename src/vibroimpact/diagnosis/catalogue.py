@@ -38,6 +38,7 @@ NO_EFFECT = {
     "modal_damping": 0.6,
     "contact_stiffness": 0.35,
 }
+NO_TURN = 0.035  # rad: two degrees; in a round tube a tenth of one begins the motion across
 NO_CONTACT_DAMPING = 1.5e-5  # s, times the contact stiffness
 LATE_SAMPLES = 0.25  # of a delay that is named
 
@@ -160,6 +161,8 @@ def within_priors(term: Term, sampling: float, sizes: Mapping[str, float]) -> bo
     value = term.values[0]
     if term.effect_id == "sensor_delay":
         return abs(value) < LATE_SAMPLES / sampling
+    if term.effect_id == "force_misalignment":
+        return abs(value) < NO_TURN
     if term.effect_id == "contact_damping":
         return value < NO_CONTACT_DAMPING * sizes["contact_stiffness"]
     if term.effect_id == "contact_stiffness":

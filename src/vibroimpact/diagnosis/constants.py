@@ -20,7 +20,7 @@ STRETCH_S, SCREENED_S = 4.0, 2.8  # of a stretch that is fitted, and of one that
 LEAST_GAIN, LEAST_SHARE = 0.05, 0.05
 
 # Decision: gains in mean log power on stretches that took no part.
-NULL_GAIN = 0.04  # less two standard errors, at which an effect is as likely as nothing
+NULL_GAIN = 0.05  # less two standard errors, at which an effect is as likely as nothing
 # Difference of rivals that counts e-fold, and what is added to it as a share of the gain.
 RIVAL, RIVAL_SHARE = 0.02, 0.04
 REST, REST_WIDTH = 1.7, 0.25  # log power over the floor: something else is as likely as not
