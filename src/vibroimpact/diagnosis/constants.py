@@ -21,6 +21,7 @@ LEAST_GAIN, LEAST_SHARE = 0.05, 0.05
 
 # Decision: gains in mean log power on stretches that took no part.
 NULL_GAIN = 0.05  # less two standard errors, at which an effect is as likely as nothing
+NULL_WIDTHS = 6.0  # e-folds of the odds of nothing between no gain and NULL_GAIN
 # Difference of rivals that counts e-fold, and what is added to it as a share of the gain.
 RIVAL, RIVAL_SHARE = 0.02, 0.04
 REST, REST_WIDTH = 1.7, 0.25  # log power over the floor: something else is as likely as not

@@ -19,7 +19,6 @@ from vibroimpact.verdict.misfit import makes_worse
 from . import constants
 from .search import Hypothesis, Search
 
-NULL_WIDTHS = 6.0  # e-folds of the odds of nothing between no gain and NULL_GAIN
 EXACT_ALIASES = {  # what no measurement of this kind can tell apart
     "gap@all": ("sensor_gain@force_and_responses", "sensor_gain"),
     "sensor_gain@force_and_responses": ("gap@all", "gap"),
@@ -79,7 +78,7 @@ def decide(search: Search, level: float, floor: float) -> Decision:
     rest = level - floor if np.isfinite(floor) else 0.0
     unexplained = float(expit((rest - constants.REST) / constants.REST_WIDTH))
     sure = max(map(sure_gain, hypotheses), default=0.0)
-    no_effect = float(expit(NULL_WIDTHS * (1.0 - sure / constants.NULL_GAIN)))
+    no_effect = float(expit(constants.NULL_WIDTHS * (1.0 - sure / constants.NULL_GAIN)))
     nothing = no_effect * (1.0 - unexplained)
     share = max(best, 0.0) / max(best + max(rest, 0.0), 1.0e-12)
     width = constants.RIVAL + constants.RIVAL_SHARE * max(best, 0.0)
