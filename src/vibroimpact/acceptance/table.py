@@ -13,11 +13,11 @@ import numpy as np
 
 from .calibration import calibration_error
 from .intervals import wilson
+from .judging import SINGLE
 
 WORST = 3.0  # the costliest verdict over the target of the median
 MINUTES = {"nothing": 0.5, "one effect": 1.0, "two effects": 2.0}  # of CPU, median
 CERTAIN = 0.99  # probability that counts as certain
-SINGLE = ("strong", "medium", "exact_alias", "near_alias")  # one effect of a floor at least
 NO_FAULT = (
     "nothing",
     *SINGLE,

@@ -38,6 +38,8 @@ def plate_terms(comparison: Comparison, bench: Bench, point: Point) -> list[Term
     bench: of stretches in contact. Raises ConfigError or ValueError where the Point makes no model.
     """
     model = comparison.structure.model(point)
+    if not model.support_names:
+        return []
     owners = places_of(model).owners[: 2 * len(model.support_names)]
     demands = [demand_of(comparison, bench, stretch, point) for stretch in bench.stretches]
     first = float(model.frequencies[model.omega > 0.0].min())

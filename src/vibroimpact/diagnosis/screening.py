@@ -133,15 +133,16 @@ def _with_halfway(
     """Return Screened with the terms half way to the neighbours of those that gain most: a gain may
     lie within a quarter of a wave, or a few degrees, and that between two trials.
     """
-    beside = [
-        (each.point, halfway(each.point.terms[-1], bench.structure.values, along))
-        for each in ranked
-    ]
-    tried = {
-        (term.name, term.values): replace(point, terms=(*point.terms[:-1], term))
-        for point, terms in [pair for pair in beside if pair[1]][:BETWEEN]
-        for term in terms
-    }
+    tried: dict[tuple, Point] = {}
+    leading = 0
+    for each in ranked:
+        *before, last = each.point.terms
+        beside = halfway(last, bench.structure.values, along)
+        for term in beside:
+            tried[term.name, term.values] = replace(each.point, terms=(*before, term))
+        leading += bool(beside)
+        if leading == BETWEEN:
+            break
     points = list(tried.values())
     gains = _gains(bench, lines, points)
     found = [Screened(*pair) for pair in zip(points, map(float, gains), strict=True)]

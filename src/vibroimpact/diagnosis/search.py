@@ -175,7 +175,8 @@ def _screened(at: _Benches, base: Point) -> Screening:
     known = {term.effect_id for term in base.terms}
     others = [effect for effect in at.effects if effect.id not in known]
     own = at.comparison
-    demanded = plate_terms(own, at.screened, base) if PLATE not in known else []
+    wanted = any(effect.id == PLATE for effect in others)
+    demanded = plate_terms(own, at.screened, base) if wanted else []
     return screen(at.screened, base, others, own.sizes, own.across, own.along, demanded)
 
 
