@@ -498,3 +498,11 @@ def test_calibration_error_is_the_mean_gap():
     stated = [(0.95, True)] * 50 + [(0.95, False)] * 50 + [(0.05, False)] * 100
     assert calibration_error(stated) == pytest.approx(0.5 * 0.45 + 0.5 * 0.05)
     assert np.isnan(calibration_error([]))
+
+
+def test_rows_judged_before_a_question_was_asked_do_not_answer():
+    older = [
+        {key: value for key, value in row.items() if key != "first_three"} for row in small_draw()
+    ]
+    assert numbers_of(older, "one effect", "first")[0] == 3
+    assert numbers_of(older, "one effect", "among the first three")[0] == 0

@@ -18,6 +18,8 @@ from .judging import SINGLE
 WORST = 3.0  # the costliest verdict over the target of the median
 MINUTES = {"nothing": 0.5, "one effect": 1.0, "two effects": 2.0}  # of CPU, median
 CERTAIN = 0.99  # probability that counts as certain
+SAID = 0.1  # from which it counts for calibration: the many that are near 0 would hide the others
+EFFECTS = (*SINGLE, "two")
 NO_FAULT = (
     "nothing",
     *SINGLE,
@@ -54,8 +56,9 @@ class Question:
     @property
     def name(self) -> str:
         """Return the kinds in words."""
-        if self.kinds in (NO_FAULT, SINGLE):
-            return "no fault" if self.kinds == NO_FAULT else "one effect"
+        groups = {NO_FAULT: "no fault", SINGLE: "one effect", EFFECTS: "one or two effects"}
+        if self.kinds in groups:
+            return groups[self.kinds]
         return " and ".join(kind.replace("_", " ") for kind in self.kinds) or "all"
 
 
@@ -77,7 +80,7 @@ QUESTIONS = (
     Question(("fault",), "flagged", "flagged", least=0.95),
     Question(NO_FAULT, "flagged", "flag_not_due", most=0.03),
     Question((), "parameters covered", "covered", least=0.85, most=0.95),
-    Question((*SINGLE, "two"), "held out, 0.8 closed", "closes", least=0.90, given="in_set"),
+    Question(EFFECTS, "held out, 0.8 closed", "closes", least=0.90, given="in_set"),
 )
 
 
@@ -90,8 +93,9 @@ def acceptance_table(rows: list[Row], stated: Sequence[tuple[float, bool]]) -> l
     of a median. standing: met, missed, or no campaigns; by the rate itself.
     """
     table = [_share(question, rows) for question in QUESTIONS]
-    error = np.array([calibration_error(stated)])
-    table.append(_number("all", "expected calibration error", error[np.isfinite(error)], most=0.05))
+    error = np.array([calibration_error([pair for pair in stated if pair[0] >= SAID])])
+    quantity = f"expected calibration error, from {SAID:g} on"
+    table.append(_number("all", quantity, error[np.isfinite(error)], most=0.05))
     certain = [{"kind": "", "false": not true} for p, true in stated if p >= CERTAIN]
     table.append(_share(Question((), "stated certain, and false", "false", most=0.02), certain))
     errors = _finite(rows, "parameter_error", lambda row: True)
@@ -120,7 +124,7 @@ def _finite(rows: list[Row], key: str, counts: Callable[[Row], bool]) -> np.ndar
 def _share(question: Question, rows: list[Row]) -> Row:
     """Return the row of a question."""
     answers = [
-        row[question.key]
+        row.get(question.key, np.nan)  # rows judged before it was asked do not answer
         for row in rows
         if (not question.kinds or row["kind"] in question.kinds)
         and (not question.given or row[question.given])
