@@ -13,7 +13,8 @@ from vibroimpact.integration.kernels.decimation import RATIO
 from vibroimpact.integration.step_stability import require_stable_step
 from vibroimpact.records import plain_values
 
-from .constants import GAIN_SD
+from .constants import GAIN_SD, VALUE_SD
+from .coordinates import Coordinate
 from .explanations import Point, Structure
 from .measurement.signals import Signals
 from .search import Hypothesis
@@ -23,7 +24,7 @@ NINETY_SD = 1.645  # sigma: half width of the 90 % interval of a normal law
 
 def effect_rows(hypothesis: Hypothesis, signals: Signals) -> list[Values]:
     """Return the rows of `effects` of verdict.json: id, family, location, parameters with their 90
-    % intervals.
+    % intervals: of the fit, and of what two codes of the same structure differ by.
     """
     fit = hypothesis.fit
     half = NINETY_SD * fit.deviation
@@ -39,7 +40,9 @@ def effect_rows(hypothesis: Hypothesis, signals: Signals) -> list[Values]:
                 )
                 value = term.values[row.parameter]
                 # a gain common to force and responses is hidden in every length
-                hidden = NINETY_SD * GAIN_SD * abs(parameter.gain_power * value)
+                hidden = NINETY_SD * float(
+                    np.hypot(GAIN_SD * parameter.gain_power * value, VALUE_SD * _change(row, x))
+                )
                 parameters[parameter.name] = {
                     "value": value,
                     "low": value - float(np.hypot(value - low, hidden)),
@@ -60,6 +63,12 @@ def effect_rows(hypothesis: Hypothesis, signals: Signals) -> list[Values]:
             }
         )
     return out
+
+
+def _change(row: Coordinate, x: float) -> float:
+    """Return by how much a coordinate changes the value from where the effect is absent."""
+    value = row.to_value(x)
+    return float(value * x) if row.log else value
 
 
 def completed_model(structure: Structure, point: Point, what: str) -> str:
