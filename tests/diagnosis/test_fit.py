@@ -5,6 +5,7 @@ import pytest
 
 from tests.diagnosis.played import played
 from vibroimpact.diagnosis.coordinates import (
+    NUISANCES,
     effect_coordinates,
     nuisance_coordinates,
     to_point,
@@ -20,15 +21,17 @@ def test_coordinates_come_back(comparison):
         Term("support_offset", "right", (3e-5, -2e-5)),
         Term("cubic_stiffness", "arc_355_6mm_turned_m9_5deg", (2e9,)),
     )
-    point = Point(terms, (0.001, -0.002), (0.1,), (0.0, 0.01))
-    nuisances = nuisance_coordinates(np.array([0.02, 0.001]), 2)
+    point = Point(terms, (0.001, -0.002), (0.1,), (0.0, 0.01), (0.02,))
+    nuisances = nuisance_coordinates(np.array([0.02, 0.001]), 2, True)
     assert [row.index for row in nuisances if row.kind == "damping"] == [0]
     rows = [*effect_coordinates(terms, comparison.sizes), *nuisances]
     back = to_point(to_vector(point, rows), rows, point)
     assert [term.location for term in back.terms] == [term.location for term in terms]
     for one, other in zip(back.terms, terms, strict=True):
         assert one.values == pytest.approx(other.values)
-    assert back.frequency == pytest.approx((0.001, -0.002)) and back.gain[1] == pytest.approx(0.01)
+    for kind in NUISANCES:
+        own = getattr(point, kind)
+        assert getattr(back, kind)[: len(own)] == pytest.approx(own)
 
 
 @pytest.mark.parametrize(

@@ -158,3 +158,20 @@ def test_neighbouring_supports_keep_a_span_between_them():
     )
     nodes = mesh_arc_lengths(line, MESH, [np.array([0.2, 0.3]), np.array([0.6, 0.7])])
     assert len(nodes) == 3 * 20 + 2 + 1
+
+
+def test_a_direction_is_carried_from_any_place_to_any_other():
+    """Round a bend in a plane, and back: across the plane nothing turns, in it all does."""
+    line = path(
+        [0, 0, 0],
+        [0, 0, 1],
+        [straight(0.2), bend(0.3, 90.0, [1, 0, 0]), bend(0.4, 60.0, [0, 1, 0]), straight(0.1)],
+    )
+    given = unit_vector([0.6, 0.8, 0.3])
+    whole = line.carried(given, line.length)
+    half_way = line.carried(given, 0.45)
+    np.testing.assert_allclose(line.carried(half_way, line.length, 0.45), whole, atol=1e-12)
+    back = line.carried(whole, 0.1, line.length)
+    np.testing.assert_allclose(back, unit_vector([0.6, 0.8, 0.0]), atol=1e-12)
+    for at in (0.1, 0.45, 0.8):
+        assert abs(line.carried(given, at, 0.05) @ line.direction(at)) < 1e-12

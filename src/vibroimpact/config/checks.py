@@ -12,6 +12,7 @@ import math
 import os
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
+from functools import cache
 from typing import Any
 
 from . import (
@@ -47,10 +48,16 @@ def cross_problems(sections: Mapping[str, Any]) -> list[tuple[str, Any, str]]:
     """
     problems: list[tuple[str, Any, str]] = []
     for check in CHECKS:
-        wanted = list(inspect.signature(check).parameters)
+        wanted = _sections(check)
         if all(sections.get(name) is not None for name in wanted) and _concerns(check, sections):
             problems += check(*(sections[name] for name in wanted))
     return problems
+
+
+@cache
+def _sections(check: Callable[..., Problems]) -> tuple[str, ...]:
+    """Return the names of the sections that a check reads."""
+    return tuple(inspect.signature(check).parameters)
 
 
 def _concerns(check: Callable[..., Problems], sections: Mapping[str, Any]) -> bool:

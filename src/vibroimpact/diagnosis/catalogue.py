@@ -10,7 +10,7 @@ import numpy as np
 from vibroimpact.effects import places as on_structure
 from vibroimpact.effects.effect import Effect, Values
 
-from .constants import FREQUENCY_SD, GAIN_SD
+from .constants import FREQUENCY_SD, GAIN_SD, TURN_SD
 from .explanations import Term
 from .measurement.sensor_chain import places as in_the_chain
 
@@ -38,7 +38,6 @@ NO_EFFECT = {
     "modal_damping": 0.6,
     "contact_stiffness": 0.35,
 }
-NO_TURN = 0.035  # rad: two degrees; in a round tube a tenth of one begins the motion across
 NO_CONTACT_DAMPING = 1.5e-5  # s, times the contact stiffness
 LATE_SAMPLES = 0.25  # of a delay that is named
 
@@ -162,7 +161,7 @@ def within_priors(term: Term, sampling: float, sizes: Mapping[str, float]) -> bo
     if term.effect_id == "sensor_delay":
         return abs(value) < LATE_SAMPLES / sampling
     if term.effect_id == "force_misalignment":
-        return abs(value) < NO_TURN
+        return abs(value) < 2.0 * TURN_SD
     if term.effect_id == "contact_damping":
         return value < NO_CONTACT_DAMPING * sizes["contact_stiffness"]
     if term.effect_id == "contact_stiffness":

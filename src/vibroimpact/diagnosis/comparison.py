@@ -73,10 +73,12 @@ class Comparison:
         return np.flatnonzero(seen(model) & (model.frequencies < self.band[1]))
 
     def nuisances(self) -> list[Coordinate]:
-        """Return the coordinates of the nuisances: of the modes in the band and of all channels."""
+        """Return the coordinates of the nuisances: of the modes in the band, of all channels and,
+        where motion across the force is seen, of its direction.
+        """
         model = self.structure.with_terms(())
         ratio = model.damping / (2.0 * np.maximum(model.omega, 1.0e-12))
-        return nuisance_coordinates(ratio[self._seen], len(self.structure.names))
+        return nuisance_coordinates(ratio[self._seen], len(self.structure.names), self.across)
 
     @cached_property
     def across(self) -> bool:

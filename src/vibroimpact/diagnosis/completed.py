@@ -76,7 +76,7 @@ def completed_model(structure: Structure, point: Point, what: str) -> str:
 
     what: the first line, a comment. Gains are a comment: they are no part of the model.
     """
-    config = structure.configuration(point.terms)
+    config = structure.configuration(structure.terms(point))
     values = config.model_dump(mode="json")
     factors = np.exp(point.frequency)
     known = [*values["mode_frequency_factors"], *[1.0] * len(factors)][

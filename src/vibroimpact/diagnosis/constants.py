@@ -3,10 +3,11 @@ campaigns.
 """
 
 # Priors of the nuisances of a measured structure, one relative sigma: what a modal test finds a
-# good model to be off by.
+# good model to be off by, and a shaker to be set up to.
 FREQUENCY_SD = 0.003
 DAMPING_SD = 0.15
 GAIN_SD = 0.02
+TURN_SD = 0.0175  # rad: one degree, of the direction of the force
 # Of a fitted value, as a share of its change from where the effect is absent: what two codes of one
 # structure differ by, measured on 45 effects named in development campaigns.
 VALUE_SD = 0.04

@@ -10,10 +10,15 @@ import numpy as np
 from vibroimpact.effects.effect import Parameter
 from vibroimpact.effects.places import arc_length_m, between, turned_deg
 
-from .constants import DAMPING_SD, FREQUENCY_SD, GAIN_SD
+from .constants import DAMPING_SD, FREQUENCY_SD, GAIN_SD, TURN_SD
 from .explanations import Point, Term
 
-NUISANCES = {"frequency": FREQUENCY_SD, "damping": DAMPING_SD, "gain": GAIN_SD}
+NUISANCES = {
+    "frequency": FREQUENCY_SD,
+    "damping": DAMPING_SD,
+    "gain": GAIN_SD,
+    "turn": TURN_SD,
+}
 FARTHEST = 4.0  # sigma of a nuisance
 LEAST_DAMPING = 0.4  # of the scatter of a frequency, over it: see nuisance_coordinates
 ENDS = (0.02, 0.98)  # of a tube: nothing is looked for nearer to its ends
@@ -63,8 +68,11 @@ class Coordinate:
         return float(np.log(value / self.size)) if self.log else float(value / self.size)
 
 
-def nuisance_coordinates(damping_ratio: np.ndarray, channels: int) -> list[Coordinate]:
-    """Return the coordinates of the frequencies and damping of modes, and of the gains.
+def nuisance_coordinates(
+    damping_ratio: np.ndarray, channels: int, turned: bool
+) -> list[Coordinate]:
+    """Return the coordinates of the frequencies and damping of modes, of the gains and, where
+    `turned`, of the direction of the force.
 
     damping_ratio (mode,): a damping whose scatter moves its mode far less than that of the
     frequency does is left as it is.
@@ -74,6 +82,7 @@ def nuisance_coordinates(damping_ratio: np.ndarray, channels: int) -> list[Coord
         "frequency": range(len(damping_ratio)),
         "damping": np.flatnonzero(heavy).tolist(),
         "gain": range(channels),
+        "turn": range(int(turned)),
     }
     return [
         Coordinate(kind, index, size, low=-FARTHEST, high=FARTHEST, step=STEPS["nuisance"], sd=1.0)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from operator import attrgetter
 
 import numpy as np
 from scipy.special import expit
@@ -69,11 +70,11 @@ def decide(search: Search, level: float, floor: float) -> Decision:
     which nothing else is missing, NaN where it is not known.
     """
     distinct: dict[tuple[str, ...], Hypothesis] = {}
-    for each in sorted(search.hypotheses, key=worth, reverse=True):
+    for each in sorted(search.hypotheses, key=attrgetter("worth"), reverse=True):
         if not _superfluous(each, search.hypotheses):
             distinct.setdefault(each.ids, each)
     hypotheses = list(distinct.values())[:SHOWN]
-    gains = np.array([worth(each) for each in hypotheses])
+    gains = np.array([each.worth for each in hypotheses])
     best = float(gains[0]) if gains.size else 0.0
     rest = level - floor if np.isfinite(floor) else 0.0
     unexplained = float(expit((rest - constants.REST) / constants.REST_WIDTH))
@@ -174,20 +175,13 @@ def sure_gain(hypothesis: Hypothesis) -> float:
     return min(hypothesis.apart - 2.0 * hypothesis.error, hypothesis.gain)
 
 
-def worth(hypothesis: Hypothesis) -> float:
-    """Return the gain that a hypothesis counts by: that on stretches that took no part, and no more
-    than it had where it was fitted.
-    """
-    return min(hypothesis.apart, hypothesis.gain)
-
-
 def _superfluous(hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:
     """Return whether some effects of a hypothesis alone gain about as much, fitted or apart."""
     own = {term.effect_id for term in hypothesis.point.terms}
     return any(
         {term.effect_id for term in other.point.terms} < own
         and min(hypothesis.apart - other.apart, hypothesis.gain - other.gain)
-        < constants.needed_gain(worth(other))
+        < constants.needed_gain(other.worth)
         for other in others
     )
 

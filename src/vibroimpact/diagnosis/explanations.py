@@ -26,6 +26,7 @@ from .measurement.sensor_chain import Measuring
 from .measurement.stretches import rates_of
 
 KEPT_MODELS = 256
+TURNED = "force_misalignment"
 SEEN = 1.0e-3  # of the largest shape at a sensor or force: what is less is not seen
 # Modes are kept to so many times the sampling frequency of the records. Those above change the
 # holding force of a right model by 1 % of its power at the highest load.
@@ -61,16 +62,17 @@ class Term:
 
 @dataclass(frozen=True)
 class Point:
-    """Terms, and the nuisances as logarithms of factors.
+    """Terms, and the nuisances: an angle, and logarithms of factors.
 
     frequency, damping (mode,): of the modes that sensors or forces see, from the lowest on.
-    gain (channel,): of the channels.
+    gain (channel,): of the channels. turn (1,): rad, by which the force is turned about the tube.
     """
 
     terms: tuple[Term, ...] = ()
     frequency: tuple[float, ...] = ()
     damping: tuple[float, ...] = ()
     gain: tuple[float, ...] = ()
+    turn: tuple[float, ...] = ()
 
     @property
     def name(self) -> str:
@@ -135,6 +137,15 @@ class Structure:
         """Return the names of the channels."""
         return [str(name) for name in self.campaign["channel_name"].values]
 
+    def terms(self, point: Point) -> tuple[Term, ...]:
+        """Return the terms of a Point, with that of its turn unless the force is turned by one of
+        them.
+        """
+        if not any(point.turn) or any(term.effect_id == TURNED for term in point.terms):
+            return point.terms
+        *_, place = EFFECTS[TURNED].locations(self.values)
+        return (*point.terms, Term(TURNED, place, point.turn))
+
     def configuration(self, terms: tuple[Term, ...]) -> Config:
         """Return the checked Config with terms. Raises ConfigError for values that none can
         have.
@@ -149,18 +160,17 @@ class Structure:
     def _with_terms(self, terms: tuple[Term, ...]) -> ModalModel:
         """Return the attached model with terms, its sensors scaled to displacements."""
         model = attach(self.configuration(terms), self.campaign, self.basis)
-        model = replace(model, sensor_shapes=model.sensor_shapes * self.scale)
         kept = slice(model.modes - self.dropped)
-        return replace(
-            model, **{name: getattr(model, name)[kept] for name in ("omega", "damping", *BY_MODE)}
-        )
+        values = {name: getattr(model, name)[kept] for name in ("omega", "damping", *BY_MODE)}
+        values["sensor_shapes"] = values["sensor_shapes"] * self.scale
+        return replace(model, **values)
 
     def model(self, point: Point) -> ModalModel:
         """Return the attached model of a Point.
 
         Raises ConfigError or ValueError for values that no structure can have.
         """
-        model = self.with_terms(point.terms)
+        model = self.with_terms(self.terms(point))
         if not any(point.frequency) and not any(point.damping):
             return model
         factor, damping = (

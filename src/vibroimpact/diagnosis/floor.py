@@ -16,7 +16,7 @@ from vibroimpact.integration.held_run import HeldLane, hold
 
 from .bench import Bench, mean_log_power, undelayed
 from .comparison import Comparison
-from .constants import DAMPING_SD, FREQUENCY_SD, GAIN_SD
+from .constants import DAMPING_SD, FREQUENCY_SD, GAIN_SD, TURN_SD
 from .explanations import Point
 from .gauss_newton import Fit, fit
 from .measurement.sensed_motion import orders
@@ -39,6 +39,7 @@ def floor_of(comparison: Comparison, best: Fit) -> tuple[float, float]:
         tuple(FREQUENCY_SD * rng.standard_normal(modes)),
         tuple(DAMPING_SD * rng.standard_normal(modes)),
         tuple(GAIN_SD * rng.standard_normal(channels)),
+        tuple(TURN_SD * rng.standard_normal(int(comparison.across))),
     )
     level = mean_log_power(bench, best.lines)
     filtered = comparison.structure.campaign.attrs.get("antialias") != "none"

@@ -67,6 +67,13 @@ class Hypothesis:
         """Return the ids of its effects, sorted."""
         return tuple(sorted(self.point.ids))
 
+    @property
+    def worth(self) -> float:
+        """Return the gain that it counts by: that on stretches that took no part, and no more than
+        it had where it was fitted.
+        """
+        return min(self.apart, self.gain)
+
 
 @dataclass(frozen=True, eq=False)
 class Search:
@@ -135,12 +142,12 @@ def search(
         best = max(new, key=lambda each: each.gain)
         for each in sorted(new, key=lambda each: -each.gain):
             log(f"{each.point.name}: {each.gain:.3f}, apart {each.apart:.3f} ± {each.error:.3f}")
-        if best.apart - base.apart < needed_gain(base.apart):
+        if best.worth - base.worth < needed_gain(base.worth):
             break
         if len(best.point.terms) > 1:
             others = _without_first(at, best, nothing, screened, log)
             found |= {each.point.name: each for each in others}
-            best = max([best, *others], key=_worth)
+            best = max([best, *others], key=_rated)
         base = best
         if size < most:
             floors[best.point.name] = level, floor = floor_of(comparison, best.fit)
@@ -163,9 +170,9 @@ def _nothing(at: _Benches) -> Hypothesis:
     raise Refused(sentence, [check_row("model", "refuse", sentence)])
 
 
-def _worth(hypothesis: Hypothesis) -> float:
+def _rated(hypothesis: Hypothesis) -> float:
     """Return the gain of a Hypothesis less what each effect must bring."""
-    return hypothesis.apart - len(hypothesis.point.terms) * needed_gain(hypothesis.apart)
+    return hypothesis.worth - len(hypothesis.point.terms) * needed_gain(hypothesis.worth)
 
 
 def _screened(at: _Benches, base: Point) -> Screening:

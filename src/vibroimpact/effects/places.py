@@ -280,7 +280,6 @@ def across_deg(values: Values, point: str) -> float:
     return float(np.rad2deg(np.arctan2(second, first)))
 
 
-CARRIED = 200  # steps along a tube
 ALONG_IT = 1.0e-6  # sine of the angle between a force and the tube that it pulls at
 
 
@@ -295,9 +294,7 @@ def _carried(values, point):
     first = line.direction(ends[0])
     if np.linalg.norm(np.cross(direction, first)) < ALONG_IT * np.linalg.norm(direction):
         direction = transverse_directions(first)[0]
-    for at in np.linspace(*ends, CARRIED):
-        tangent = line.direction(at)
-        direction = unit_vector(direction - (direction @ tangent) * tangent)
+    direction, tangent = line.carried(direction, ends[1], ends[0]), line.direction(ends[1])
     angle = np.deg2rad(turned_deg(point) or 0.0)
     return np.cos(angle) * direction + np.sin(angle) * np.cross(tangent, direction)
 

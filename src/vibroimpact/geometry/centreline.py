@@ -133,22 +133,28 @@ class Centreline:
         end = self.length if other is None else self.locate(other, name)
         return min(start, end), max(start, end)
 
-    def carried(self, direction: ArrayLike, arc_length: float) -> np.ndarray:
-        """Return the unit vector (3,) that a direction at the start becomes at an arc length in m.
+    def carried(self, direction: ArrayLike, arc_length: float, start: float = 0.0) -> np.ndarray:
+        """Return the unit vector (3,) that a direction at the arc length `start` in m becomes at
+        another one, on either side of it.
 
         The part of `direction` (3,) across the tube is carried along without twist: it is constant
         on straight segments and turns with the tangent in the plane of each bend.
         Raises ValueError for a direction along the tube.
         """
-        tangent = self.direction(0.0)
+        tangent = self.direction(start)
         vector = unit_vector(direction)
         vector = unit_vector(vector - (vector @ tangent) * tangent)
-        for piece in self.segments:
-            if piece.toward is not None and arc_length > piece.begin:
-                angle = (min(arc_length, piece.end) - piece.begin) / piece.radius
-                inward = vector @ piece.toward
-                turned = np.cos(angle) * piece.toward - np.sin(angle) * piece.tangent
-                vector = unit_vector(vector + inward * (turned - piece.toward))
+        for piece in self.segments if arc_length > start else reversed(self.segments):
+            first, last = (
+                (min(max(place, piece.begin), piece.end) - piece.begin) / piece.radius
+                for place in (start, arc_length)
+            )
+            if piece.toward is not None and first != last:
+                before, after = (
+                    np.cos(angle) * piece.toward - np.sin(angle) * piece.tangent
+                    for angle in (first, last)
+                )
+                vector = unit_vector(vector + (vector @ before) * (after - before))
         return vector
 
 

@@ -153,15 +153,16 @@ class _Prepared:
         self.layout = lru_cache(maxsize=None)(self._layout)
         self.contraction = lru_cache(maxsize=None)(self._contraction)
         self.rest = lru_cache(maxsize=None)(self._rest)
+        self.signature = lru_cache(maxsize=None)(self._signature)
 
     def _layout(self, model):
         """Return the ModalLayout of a model whose sensors are force channels too."""
         held = model.sensor_shapes * (model.omega < self.highest)[:, None]
-        driven = replace(model, drive_shapes=np.hstack([model.drive_shapes, held]))
         laws = model.contact_laws
         if not laws.plain.all():  # all points take the general law: more models side by side
             laws = laws.with_columns(damping=np.maximum(laws.damping, NO_DAMPING))
-            driven = replace(driven, contact_laws=laws)
+        shapes = np.hstack([model.drive_shapes, held])
+        driven = replace(model, drive_shapes=shapes, contact_laws=laws)
         return ModalLayout(driven, self.schedule.scheme)
 
     def _contraction(self, model):
@@ -174,7 +175,7 @@ class _Prepared:
         )
         return offset[..., 0], None if rest is None else rest[:, 0]
 
-    def signature(self, model):
+    def _signature(self, model):
         """Return what models have in common that can be integrated side by side.
 
         Raises IntegrationError where the contact is too stiff for the step.

@@ -7,12 +7,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from operator import attrgetter
 from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
 
-from ..decision import worth
 from ..search import Hypothesis, Search
 from .fit import fitted
 from .linear_models import Family, LinearModels, linear_errors, stiffness_unit
@@ -139,7 +139,7 @@ def left_and_floor(setting: Setting, searched: Search) -> tuple[float, float]:
     Of records without period a share of a change by level is shown wrongly: their start is that of
     a force repeated for ever, until it is forgotten.
     """
-    best = max(searched.hypotheses, key=worth, default=None)
+    best = max(searched.hypotheses, key=attrgetter("worth"), default=None)
     left = np.log(np.mean(setting.reference[1] ** 2)) - (0.0 if best is None else best.apart)
     modes, fitted_to = setting.linear.base, setting.fitted
     missed = float(np.mean(linear_errors(modes, fitted_to.levels[0], fitted_to.band_Hz) ** 2))
