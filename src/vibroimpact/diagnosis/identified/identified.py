@@ -17,6 +17,7 @@ from vibroimpact.spectra.periodic_lines import LevelLines
 
 from ..decision import Decision
 from ..free_runs import FreeRuns
+from ..measurement.usable import refuse
 from ..search import Hypothesis
 from .evidence import PERIODS_BEFORE, evidence_of, free_runs, steady_lines
 from .fit import Fitted, estimates, fitted
@@ -30,7 +31,7 @@ from .linear_models import (
     row_of,
     tried_places,
 )
-from .records import Rows, along_force, refuse, repeating, usable_records
+from .records import Rows, along_force, repeating, usable_records
 from .search import PASSES, Log, Setting
 from .stated import check_mean, check_names, default_band, laws_of, own_units, places_of
 from .trial import LocalTerm, Records, Trial

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -23,7 +23,7 @@ from vibroimpact.campaign.signals import (
 )
 from vibroimpact.spectra.periodic_lines import LevelLines
 
-from ..measurement.usable import Refused, checked_campaign
+from ..measurement.usable import Refused, checked_campaign, refuse
 from .levels import noise_share, quick_length
 
 OTHER_FORCE = 0.01  # of the first force: another one above it can not be left out
@@ -79,11 +79,6 @@ def usable_records(
     longest = int(max(CYCLES / band[1], LOW_CYCLES / band[0]) * measured.rate)
     attributes = {"period_samples": 0, "transient_periods": 0, "whole_records": 1}
     return _last_stretch(kept, longest).assign_attrs(attributes), rows, measured
-
-
-def refuse(sentence: str, rows: Rows) -> NoReturn:
-    """Raise Refused with a row of checks that says why."""
-    raise Refused(sentence, [*rows, check_row("content", "refuse", sentence)])
 
 
 def _sound(campaign: xr.Dataset, rows: Rows) -> xr.Dataset:

@@ -5,7 +5,7 @@ left.
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 import xarray as xr
@@ -92,7 +92,7 @@ def _left(whole: xr.Dataset | None, checks: list[dict[str, Any]]) -> xr.Dataset:
     if not (kept & moving).any():
         told = [row["message"] for row in checks if row["check"] == comparable.LEFT_OUT]
         none = "No channel that measures a motion or a strain is left after the checks."
-        _refuse([*told, none][0], checks)
+        refuse([*told, none][0], checks)
     channels = np.flatnonzero(kept)
     records = np.flatnonzero(force)
     whole_channels = channels[response[np.ix_(records, channels)].all(axis=0)]
@@ -101,11 +101,11 @@ def _left(whole: xr.Dataset | None, checks: list[dict[str, Any]]) -> xr.Dataset:
     else:  # a channel that fails in some record costs that record
         records = np.flatnonzero(force & response[:, channels].all(axis=1))
     if len(records) < FEWEST_RECORDS:
-        _refuse("Fewer than two records are left after the checks: repair what they name.", checks)
+        refuse("Fewer than two records are left after the checks: repair what they name.", checks)
     return whole.isel(record=records, channel=channels)
 
 
-def _refuse(sentence, checks):
+def refuse(sentence: str, checks: Sequence[dict[str, Any]]) -> NoReturn:
     """Raise Refused with a row of checks that says why."""
     raise Refused(sentence, [*checks, check_row("content", "refuse", sentence)])
 
