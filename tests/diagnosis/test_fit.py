@@ -69,3 +69,21 @@ def test_a_named_gain_holds_all_of_the_gain_of_its_channel():
     assert found.terms[0].values[0] == pytest.approx(1.3 * np.exp(0.08))
     assert found.gain == (0.01, 0.0)
     assert Point(gain=(0.01,)).with_own_gains(["a", "b"]).gain == (0.01,)
+
+
+def test_the_direction_of_the_force_is_fitted(comparison):
+    hidden = Point(turn=(0.02,))
+    rows = [row for row in comparison.nuisances() if row.kind == "turn"]
+    found = fit(played(comparison.fitted(), hidden), Point(), rows, 3)
+    assert found.point.turn[0] == pytest.approx(0.02, abs=0.002)
+    completed = comparison.structure.configuration(comparison.structure.terms(hidden))
+    assert completed.excitation.turn_deg == pytest.approx(np.rad2deg(0.02))
+
+
+def test_a_turned_force_is_turned_about_one_axis(comparison):
+    structure = comparison.structure
+    turned = Point((Term("force_misalignment", "about_z", (0.1,)),), turn=(0.02,))
+    whole = Point((Term("force_misalignment", "about_z", (0.12,)),))
+    np.testing.assert_allclose(
+        structure.model(turned).drive_shapes, structure.model(whole).drive_shapes, atol=1e-12
+    )

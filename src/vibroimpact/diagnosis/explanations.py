@@ -138,13 +138,14 @@ class Structure:
         return [str(name) for name in self.campaign["channel_name"].values]
 
     def terms(self, point: Point) -> tuple[Term, ...]:
-        """Return the terms of a Point, with that of its turn unless the force is turned by one of
-        them.
+        """Return the terms of a Point, and that of the turn of its force: about the same axis as
+        that of a term that turns it.
         """
-        if not any(point.turn) or any(term.effect_id == TURNED for term in point.terms):
+        if not any(point.turn):
             return point.terms
         *_, place = EFFECTS[TURNED].locations(self.values)
-        return (*point.terms, Term(TURNED, place, point.turn))
+        own = (term.location for term in point.terms if term.effect_id == TURNED)
+        return (*point.terms, Term(TURNED, next(own, place), point.turn))
 
     def configuration(self, terms: tuple[Term, ...]) -> Config:
         """Return the checked Config with terms. Raises ConfigError for values that none can
