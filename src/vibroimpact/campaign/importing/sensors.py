@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from vibroimpact.campaign.file import Channel
-from vibroimpact.campaign.force_kinds import BASE
+from vibroimpact.campaign.force_kinds import BASE, FORCE
 from vibroimpact.units import UnitError, si_factor
 
 from .sidecar import DIRECTIONS, NAME, Record, Sensor, Sidecar
@@ -75,12 +75,14 @@ def resolve_sensors(measured: Measured) -> list[ResolvedSensor]:
 def _resolved(sensor: Sensor, role: str, measured: Measured) -> ResolvedSensor | None:
     """Return the ResolvedSensor, or None after adding to problems."""
     problems = measured.problems
-    signals = _signals_of(sensor.name, sensor.variable or sensor.name, measured)
+    signals = _signals_of(sensor.name, role, sensor.variable or sensor.name, measured)
     if signals is None:
         return None
     first = signals[0]
     place = f"{measured.folder / NAME}, {sensor.name}"
-    kind = sensor.kind or first.kind or ("generic" if role == "force" else "")
+    kind = sensor.kind or first.kind
+    if role == "force" and kind not in (BASE, "acceleration"):
+        kind = FORCE
     if not kind:
         problems.append(
             f"{place}: the kind is not known: add kind: acceleration, velocity, displacement,"
@@ -141,18 +143,23 @@ def _unit_vector(direction, place, problems):
     return tuple((vector / length).tolist())
 
 
-def _signals_of(sensor: str, variable: str, measured: Measured) -> list[Signal] | None:
+def _signals_of(sensor: str, role: str, variable: str, measured: Measured) -> list[Signal] | None:
     """Return the Signal of a sensor in each record; None after adding to problems."""
     signals = [
-        _signal_of(sensor, record.variables.get(sensor, variable), record, measured)
+        _signal_of((sensor, role), record.variables.get(sensor, variable), record, measured)
         for record in measured.sidecar.records
     ]
     kept = [signal for signal in signals if signal is not None]
     return kept if len(kept) == len(signals) else None
 
 
-def _signal_of(sensor: str, wanted: str, record: Record, measured: Measured) -> Signal | None:
-    """Return the Signal of a sensor in a record; None after adding to problems."""
+def _signal_of(
+    sensor: tuple[str, str], wanted: str, record: Record, measured: Measured
+) -> Signal | None:
+    """Return the Signal of a sensor, (name, role), in a record; None after adding to problems.
+
+    Of several that are called so, it is the one that the file says is of that role.
+    """
     known: list[Signal] = []
     place = measured.folder / NAME
     for name in record.all_files():
@@ -166,11 +173,13 @@ def _signal_of(sensor: str, wanted: str, record: Record, measured: Measured) -> 
     matches = [signal for signal in known if signal.name == wanted] or [
         signal for signal in known if wanted in signal.aliases
     ]
+    of_role = [signal for signal in matches if signal.force == (sensor[1] == "force")]
+    matches = of_role if len(of_role) == 1 else matches
     if len(matches) != 1:
         what = "is not" if not matches else f"is {len(matches)} times"
         measured.problems.append(
-            f"{place}, {sensor}: the signal '{wanted}' {what} in {', '.join(record.all_files())}:"
-            f" they have {', '.join(signal.name for signal in known)}; name it with variable"
+            f"{place}, {sensor[0]}: the signal '{wanted}' {what} in"
+            f" {', '.join(record.all_files())}: they have {', '.join(signal.name for signal in known)}; name it with variable"
         )
         return None
     return matches[0]
@@ -228,5 +237,5 @@ def read_voltage(measured: Measured) -> list[Signal] | None:
     except UnitError as error:
         measured.problems.append(f"{measured.folder / NAME}, voltage {error}")
         return None
-    signals = _signals_of("voltage", wanted.variable, measured)
+    signals = _signals_of("voltage", "voltage", wanted.variable, measured)
     return signals and [replace(signal, values=factor * signal.values) for signal in signals]

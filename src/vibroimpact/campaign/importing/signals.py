@@ -34,6 +34,7 @@ class Signal:
     unit_from: where in the file the unit stands.
     aliases: other names of the signal.
     note: how the file was read and its values were changed.
+    start: s, of the first sample; None where the file has no time.
     lines (time,): line of the file that holds a sample, None where the file has none.
     """
 
@@ -49,6 +50,7 @@ class Signal:
     force: bool = False
     aliases: tuple = ()
     note: str = ""
+    start: float | None = None
     lines: np.ndarray | None = None
 
     def place(self, sample: int) -> str:

@@ -6,6 +6,7 @@ Nodes are taken from datasets 15 and 2411, units from 164.
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -39,7 +40,8 @@ AGAIN = "export it again"
 def read_uff(path: str | Path) -> list[Signal]:
     """Return the Signals of the time records of a file.
 
-    A signal is named node:axis, as 12:+y. Its aliases are the entity's name and the first
+    A signal is named node:axis, as 12:+y; where a node has several, as a drive point has, with its
+    quantity: "12:+y force". Its aliases are node:axis, the entity's name and the first
     identification line. Raises ImportProblem when the file can not be read or has no time record.
     """
     types, sets = _datasets(path)
@@ -60,6 +62,29 @@ def read_uff(path: str | Path) -> list[Signal]:
             f" {sorted(set(types))}{', function types ' + ', '.join(found) if found else ''}:"
             " export the time histories"
         )
+    return _with_own_names(signals)
+
+
+def _with_own_names(signals):
+    """Return the Signals, each with a name of its own: node:axis, then its quantity, then its last
+    alias, then a number, as far as it takes.
+    """
+    for level in range(3):
+        names = [signal.name for signal in signals]
+        details = [
+            (
+                "force" if signal.force else signal.kind.replace("_", " "),
+                signal.aliases[-1] if len(signal.aliases) > 1 else "",
+                f"#{names[: index + 1].count(signal.name)}",
+            )[level]
+            for index, signal in enumerate(signals)
+        ]
+        signals = [
+            replace(signal, name=f"{signal.name} {detail}".rstrip())
+            if names.count(signal.name) > 1
+            else signal
+            for signal, detail in zip(signals, details, strict=True)
+        ]
     return signals
 
 
@@ -132,17 +157,18 @@ def _signal(data, path, nodes, units):
         )
     second = _second(data, place)
     if data["abscissa_spacing"] == 1:
-        step = data["abscissa_inc"] * second
+        step, start = (data[key] * second for key in ("abscissa_inc", "abscissa_min"))
         rate, note = whole_rate(1.0 / step) if SHORTEST_STEP < step < np.inf else None, ""
     else:
         time = np.asarray(data["x"], float) * second
         values, rate, note = even_samples(time, values, place)
+        start = time[0]
     type_ = int(data["ordinate_spec_data_type"])
     unit, unit_from = _unit(data, type_, units)
     direction = tuple(np.sign(axis) * np.eye(3)[abs(axis) - 1]) if abs(axis) in AXES else None
     aliases = tuple(
         text
-        for text in (_text(data.get("rsp_ent_name")), _text(data.get("id1")))
+        for text in (name, _text(data.get("rsp_ent_name")), _text(data.get("id1")))
         if text not in NOTHING
     )
     return Signal(
@@ -158,6 +184,7 @@ def _signal(data, path, nodes, units):
         type_ in FORCE_TYPES,
         aliases,
         note,
+        start=float(start),
     )
 
 
