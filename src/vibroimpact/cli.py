@@ -18,6 +18,7 @@ from vibroimpact.equivalent_support.command import add_arguments
 # Read when numpy is first imported. The matrices are small: threads would wait for each other, and
 # take up to ten times the CPU. Runs are what is done side by side.
 ONE_THREAD = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL")}
+PREFIX = {"warn": "warning: ", "not checked": "{check}: "}  # of what a check says
 NETCDF = (".nc", ".nc4", ".cdf")
 # How netCDF files begin, of the classic format and of HDF5.
 SIGNATURES = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF")
@@ -198,9 +199,9 @@ def _campaign(path: str) -> tuple[str | None, list[str]]:
     from vibroimpact.campaign.checks.file_checks import check_file, refused
     from vibroimpact.diagnosis.measurement.comparable import campaign_problems, channel_rows
 
-    campaign, rows = check_file(path)
+    campaign, rows = check_file(path, unmade=True)
     problems = [
-        f"{path}: {'warning: ' if row['level'] == 'warn' else ''}{row['message']}"
+        f"{path}: {PREFIX.get(row['level'], '').format(**row)}{row['message']}"
         for row in rows
         if row["level"] != "pass"
     ]

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from vibroimpact.campaign.file import Level, campaign_dataset, contract_problems
+from vibroimpact.campaign.file import Level, campaign_dataset, contract_problems, load_of
 from vibroimpact.units import si_factor, si_unit
 
 from .cuts import Cut, cut_records
@@ -99,7 +99,8 @@ def _campaign(sidecar, sensors, cuts, rate, voltage):
     channels, drives = (
         [sensor.channel for sensor in groups[role]] for role in ("response", "force")
     )
-    loads = np.sqrt(np.nanmean(np.square(stacked["force"][:, 0]), axis=-1))
+    stated = {} if sidecar.band_Hz is None else {"band_Hz": sidecar.band_Hz}
+    loads = [load_of(force[0], rate, sidecar.band_Hz) for force in stacked["force"]]
     return campaign_dataset(
         stacked["force"],
         stacked["response"],
@@ -113,6 +114,7 @@ def _campaign(sidecar, sensors, cuts, rate, voltage):
         start_up=sidecar.start_up,
         period_samples=sidecar.period_samples,
         transient_periods=sidecar.transient_periods,
+        **stated,
     )
 
 

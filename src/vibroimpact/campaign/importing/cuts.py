@@ -108,8 +108,8 @@ def _apart(group: list[Signal], cut: Cut) -> Iterator[str]:
             )
         elif abs(samples - round(samples)) > EVEN_WITHIN:
             yield (
-                f"{begin}, {samples:.2f} samples apart: export them from one clock, or resample them"
-                " to common times"
+                f"{begin}, {samples:.2f} samples apart: export them from one clock, or resample"
+                " them to common times"
             )
 
 
@@ -143,22 +143,23 @@ def _odd_values(sensor: ResolvedSensor, signal: Signal, cut: Cut) -> Iterator[st
     NaN stands for a sample that is missing: the checks of the campaign say what is left out.
     """
     values, unit = cut.of(signal), sensor.channel.units
+    first = cut.first + cut.late(signal)
     size = np.abs(values)
     wrong = np.flatnonzero(size > min(MOST_STORED, MOST_SI / si_factor(unit, sensor.unit_kind)))
     if wrong.size:
         more = f" and {wrong.size - 1} others" if wrong.size > 1 else ""
         yield (
-            f"{signal.place(cut.first + cut.late(signal) + int(wrong[0]))}: {values[wrong[0]]:g} {unit}{more} in"
+            f"{signal.place(first + int(wrong[0]))}: {values[wrong[0]]:g} {unit}{more} in"
             f" record {cut.name} is no measured value: correct the file or its unit, or write nan"
             " where a sample is missing"
         )
     elif not np.isfinite(size).any() and sensor.role == "force":
         yield (
-            f"{signal.place(cut.first + cut.late(signal))}: {sensor.channel.name} has no value in record {cut.name}:"
+            f"{signal.place(first)}: {sensor.channel.name} has no value in record {cut.name}:"
             " leave the record out"
         )
     elif 0.0 < np.nanmax(size, initial=0.0) < LEAST_STORED:
         yield (
-            f"{signal.place(cut.first + cut.late(signal))}: {sensor.channel.name} is below {LEAST_STORED:g} {unit} in"
+            f"{signal.place(first)}: {sensor.channel.name} is below {LEAST_STORED:g} {unit} in"
             f" record {cut.name}: correct its unit"
         )

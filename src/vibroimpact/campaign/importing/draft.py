@@ -14,8 +14,8 @@ from .signals import ImportProblem, Signal
 
 UNKNOWN = "FILL_IN"
 HEAD = (
-    "# Complete every FILL_IN, or delete its key where there is none. Delete signals that are no sensors,"
-    " and list forces under 'forces'."
+    "# Complete every FILL_IN, or delete its key where there is none. Delete signals that are no"
+    " sensors, and list forces under 'forces'."
 )
 
 

@@ -103,6 +103,8 @@ def _resolved(sensor: Sensor, role: str, measured: Measured) -> ResolvedSensor |
             f"{place}: its direction is not known: add direction: +x, -y, ... or [x, y, z], the"
             " positive sense"
         )
+    if getattr(sensor, "remove_offset", False):
+        signals = [_without_offset(signal) for signal in signals]
     unit = _unit(sensor, signals, unit_kind(role, kind), measured)
     if unit is None or not kind or point is None or direction is None:
         return None
@@ -111,6 +113,15 @@ def _resolved(sensor: Sensor, role: str, measured: Measured) -> ResolvedSensor |
         unit_from = f"{NAME}; {first.unit_from} says {first.unit}"
     channel = Channel(sensor.name, tuple(point), tuple(direction), unit, kind)
     return ResolvedSensor(channel, unit_from, signals, role)
+
+
+def _without_offset(signal: Signal) -> Signal:
+    """Return the Signal less its median, and a note that says so."""
+    offset = float(np.nanmedian(signal.values)) if np.isfinite(signal.values).any() else 0.0
+    note = f"its offset of {offset:.4g} is taken out"
+    return replace(
+        signal, values=signal.values - offset, note="; ".join(filter(None, [signal.note, note]))
+    )
 
 
 def _unit(sensor: Sensor, signals: list[Signal], kind: str, measured: Measured) -> str | None:
@@ -179,7 +190,8 @@ def _signal_of(
         what = "is not" if not matches else f"is {len(matches)} times"
         measured.problems.append(
             f"{place}, {sensor[0]}: the signal '{wanted}' {what} in"
-            f" {', '.join(record.all_files())}: they have {', '.join(signal.name for signal in known)}; name it with variable"
+            f" {', '.join(record.all_files())}: they have"
+            f" {', '.join(signal.name for signal in known)}; name it with variable"
         )
         return None
     return matches[0]

@@ -15,6 +15,7 @@ from vibroimpact.campaign.file import Kind
 from vibroimpact.campaign.force_kinds import ForceKind
 from vibroimpact.config.problems import PLAIN_WORDS, ConfigError, shown
 from vibroimpact.config.quantities import (
+    Band_Hz,
     Frequency_Hz,
     Length,
     Number,
@@ -84,9 +85,13 @@ class Sensor(Section):
 
 
 class Drive(Sensor):
-    """A force, or an acceleration of the base, which needs no point_m."""
+    """A force, or an acceleration of the base, which needs no point_m.
+
+    remove_offset: the median of the signal is taken out, which blows of a hammer do not move.
+    """
 
     kind: ForceKind | Kind | None = None  # type: ignore[assignment]
+    remove_offset: bool = False
 
 
 class Record(Section):
@@ -124,6 +129,7 @@ class Sidecar(Section):
 
     source: Text = ""
     sampling_frequency_Hz: Frequency_Hz | None = None
+    band_Hz: Band_Hz | None = None
     antialias: Text = "unknown"
     start_up: Literal["rest", "stationary"] = "stationary"
     period_samples: PeriodSamples = 0
