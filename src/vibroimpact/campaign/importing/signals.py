@@ -8,7 +8,21 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-TIME_NAMES = ("time", "t", "time_s", "time (s)", "time [s]")
+TIME_NAMES = ("time", "t", "time_s", "time (s)", "time [s]", "zeit")
+# Files of recorders that are not read, by the end of their name: what they are, and the remedy.
+UNREAD = {
+    ".lvm": "is a LabVIEW measurement file, which is not read: save its table as CSV, with one line"
+    " of names above it, or convert it with the Python package lvm_read",
+    ".tdms": "is a TDMS file of National Instruments, which is not read: export it as CSV or"
+    " MATLAB, or convert it with the Python package npTDMS",
+    ".mf4": "is an ASAM MDF file, which is not read: export it as CSV or MATLAB, or convert it with"
+    " the Python package asammdf",
+    ".wav": "is a sound file, which has no units: export it as MATLAB or UFF",
+    ".txt": "is a text file: where it holds a table, rename it to .csv",
+    ".xlsx": "is a workbook, which is not read: save its sheet as CSV",
+}
+for alike, known in ((".mdf", ".mf4"), (".asc", ".txt"), (".dat", ".txt"), (".xls", ".xlsx")):
+    UNREAD[alike] = UNREAD[known]
 RATE_NAMES = ("Fs", "fs", "sampling_frequency", "sampling_frequency_Hz", "sample_rate")
 EVEN_WITHIN = 0.05  # steps: scatter of time stamps about an even grid
 LOST_SAMPLE = 1.5  # steps: a longer interval means that samples are missing
