@@ -204,3 +204,32 @@ def test_checks_that_a_sine_does_not_allow_are_not_checked():
 def test_a_file_without_time_is_not_checked_for_it():
     made = campaign(levels_of(random_force(20.0, 1))).drop_vars("time")
     assert told(made, "time") == ["Not checked: the file has no variable time."]
+
+
+def two_close_modes(force):
+    """(2, time) accelerations of two masses of 2 kg, driven at the first, with modes at 40.0 and
+    40.6 Hz of 1.0 and 1.5 % of damping: real modes, since the damping is proportional to each.
+    """
+    shapes = np.array([[1.0, 1.0], [1.0, -1.0]]) / 2.0  # of unit modal mass
+    poles, ratios = 2.0 * np.pi * np.array([40.0, 40.6]), np.array([0.01, 0.015])
+    lines = np.fft.rfft(force)
+    s = 2j * np.pi * np.fft.rfftfreq(force.size, 1.0 / RATE)
+    modal = s**2 / (s**2 + 2.0 * (ratios * poles)[:, None] * s + (poles**2)[:, None])
+    return np.fft.irfft(shapes @ (shapes[0][:, None] * modal) * lines, force.size)
+
+
+@pytest.mark.parametrize("lag", [0, 3])
+def test_damping_that_couples_close_modes_is_no_delay(lag):
+    """Far from the modes the second mass leads by 1.4 ms, as a delay of its channel would do."""
+    forces = levels_of(random_force(60.0, 1, (10.0, 120.0)))
+    made = campaign(forces)
+    response = np.array([two_close_modes(force) for force in forces])
+    response[:, 1] = np.roll(response[:, 1], lag, axis=-1)
+    response += 3e-3 * np.random.default_rng(4).standard_normal(response.shape)
+    channels = [Channel(name, (0.0, 0.0, 0.0), Y, "m s-2", "acceleration") for name in "ab"]
+    drive = Channel("cell", (0.0, 0.0, 0.0), Y, "N", "force")
+    levels = [Level("low", np.nan), Level("high", np.nan, split="holdout")]
+    made = campaign_dataset(
+        [force[None] for force in forces], response, channels, [drive], levels, RATE
+    )
+    assert ("delay" in told(made)) == bool(lag)
