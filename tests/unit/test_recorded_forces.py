@@ -222,7 +222,6 @@ def two_close_modes(force):
 def test_damping_that_couples_close_modes_is_no_delay(lag):
     """Far from the modes the second mass leads by 1.4 ms, as a delay of its channel would do."""
     forces = levels_of(random_force(60.0, 1, (10.0, 120.0)))
-    made = campaign(forces)
     response = np.array([two_close_modes(force) for force in forces])
     response[:, 1] = np.roll(response[:, 1], lag, axis=-1)
     response += 3e-3 * np.random.default_rng(4).standard_normal(response.shape)
