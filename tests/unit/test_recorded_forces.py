@@ -5,6 +5,7 @@ import pytest
 import yaml
 from scipy.signal import StateSpace, butter, lsim, sosfiltfilt
 
+from docs.examples import hammer_test
 from vibroimpact.campaign.checks.file_checks import NOT_CHECKED, check_campaign, refused
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset, force_signal
 from vibroimpact.campaign.importing.assemble import import_folder
@@ -232,3 +233,12 @@ def test_damping_that_couples_close_modes_is_no_delay(lag):
         [force[None] for force in forces], response, channels, [drive], levels, RATE
     )
     assert ("delay" in told(made)) == bool(lag)
+
+
+def test_the_example_of_a_hammer_test_is_sound(tmp_path):
+    hammer_test.main(tmp_path)
+    made, rows = import_folder(tmp_path)
+    assert told(made) == {}
+    assert rows[0]["note"] == "its offset of 3 is taken out"
+    zeros = force_signal(made, 0) == 0.0
+    assert zeros.mean() > 0.9
