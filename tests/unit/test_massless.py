@@ -137,4 +137,4 @@ def test_a_structure_with_mass_throughout_is_left_as_it_is():
 )
 def test_the_check_tells_what_is_condensed(tmp_path, case, told):
     found = check_model(study(tmp_path, *CASES[case]))
-    assert found.problems == () and f"{tmp_path / 'm.npz'}: {told}" in found.warnings[0]
+    assert found.problems == () and f"structure.mass: {told}" in found.warnings[0]

@@ -302,8 +302,8 @@ def fill_missing(campaign: xr.Dataset) -> xr.Dataset:
     whole = campaign.assign(new)
     if "load_rms" not in campaign:
         rate, band = float(campaign.attrs["sampling_frequency"]), band_of(campaign.attrs)
-        loads = [load_of(force_signal(whole, record), rate, band) for record in range(count)]
-        new["load_rms"] = ("record", np.array(loads), {"units": load_unit(campaign)})
+        found = [load_of(force_signal(whole, record), rate, band) for record in range(count)]
+        new["load_rms"] = ("record", np.array(found), {"units": load_unit(campaign)})
         assumed.append("load_rms is missing: it was computed from force channel 0")
     loads = new["load_rms"][1] if "load_rms" in new else campaign["load_rms"].values
     if "repeat" not in campaign:

@@ -63,5 +63,5 @@ def check_model(config: Config) -> ModelChecks:
     except (IntegrationError, ModelAccuracyError) as error:
         return ModelChecks((*problems, str(error)))
     condensed = getattr(structure, "condensed", None)
-    told = [] if condensed is None else [f"{config.structure.mass}: {condensed.told()}"]
+    told = [] if condensed is None else [f"structure.mass: {condensed.told()}"]
     return ModelChecks(tuple(problems), (*told, *mesh_warnings(accuracy)))
