@@ -118,6 +118,19 @@ def _parser() -> argparse.ArgumentParser:
         " the verdict. The exit code is 1 where the campaign can not be compared with the model.",
     )
     diagnose_command.add_arguments(diagnosis)
+    compare = commands.add_parser(
+        "compare",
+        help="hold measured frequency responses to the linear model",
+        description="Print the modes of measured frequency responses beside those of the linear"
+        " model, and which channels contradict it: swapped, reversed, or in another unit. The file"
+        " is a universal file with frequency responses (dataset 58, function type 4) of one force,"
+        " or of one accelerometer under a roving hammer, with its nodes; or a measured campaign,"
+        " of which the record of the lowest load is taken. Supports are taken without contact. The"
+        " exit code is 1 where nothing can be compared.",
+    )
+    compare.add_argument("file", metavar="FILE")
+    compare.add_argument("--model", metavar="FILE", required=True, help="configuration")
+    compare.set_defaults(command=_compare)
     supports = commands.add_parser(
         "supports",
         help="print the contact forces at the supports of a measured structure, from its sensors",
@@ -147,6 +160,44 @@ def _check(options: argparse.Namespace) -> int:
     if summary:
         print(f"{options.file}: {summary}")
     return 0 if summary else 1
+
+
+def _compare(options: argparse.Namespace) -> int:
+    """Hold frequency responses to a linear model. Return 1 where it can not be done."""
+    from vibroimpact.campaign.file import CampaignError, read_campaign
+    from vibroimpact.campaign.importing.frf import read_frfs
+    from vibroimpact.campaign.importing.signals import ImportProblem
+    from vibroimpact.config.problems import ConfigError
+    from vibroimpact.config.reading import load_config
+    from vibroimpact.diagnosis.measurement.comparable import comparison_problems
+    from vibroimpact.records import RecordError
+    from vibroimpact.reports.linear_comparison import (
+        NotComparable,
+        comparison_text,
+        described,
+        linear_comparison,
+        lowest_responses,
+    )
+
+    try:
+        config = load_config(options.model)
+        if _is_netcdf(options.file):
+            campaign = read_campaign(options.file)
+            spectra = lowest_responses(campaign)
+        else:
+            campaign, spectra = described(read_frfs(options.file))
+        problems = comparison_problems(config, campaign)
+        if problems:
+            raise NotComparable("\n".join(problems))
+        lines = comparison_text(*linear_comparison(config, campaign, spectra))
+    except NotComparable as problem:
+        print(f"{options.file}: {problem}", file=sys.stderr)
+        return 1
+    except (ImportProblem, RecordError, CampaignError, ConfigError, ValueError, OSError) as error:
+        print(error, file=sys.stderr)
+        return 1
+    print("\n".join(lines))
+    return 0
 
 
 def _new(options: argparse.Namespace) -> int:

@@ -44,7 +44,7 @@ def read_uff(path: str | Path) -> list[Signal]:
     quantity: "12:+y force". Its aliases are node:axis, the entity's name and the first
     identification line. Raises ImportProblem when the file can not be read or has no time record.
     """
-    types, sets = _datasets(path)
+    types, sets = read_datasets(path)
     units = next((data for index, data in sets.items() if types[index] == 164), None)
     if units is not None and not all(0.0 < units[key] < np.inf for key in ("length", "force")):
         raise ImportProblem(
@@ -52,15 +52,18 @@ def read_uff(path: str | Path) -> list[Signal]:
             f" length and force per SI unit: {AGAIN}"
         )
     tables = [data for index, data in sets.items() if types[index] in (15, 2411)]
-    nodes = _nodes(tables, units, path)
+    nodes = nodes_of(tables, units, path)
     functions = [data for index, data in sets.items() if types[index] == 58]
     signals = [_signal(data, path, nodes, units) for data in functions if _is_time_record(data)]
     if not signals:
         found = sorted({f"{data['func_type']} ({data.get('id1', '')})" for data in functions})
+        remedy = "export the time histories"
+        if any(data["func_type"] == 4 for data in functions):
+            remedy += f", or hold its frequency responses to a model: vibroimpact compare {path}"
         raise ImportProblem(
             f"{path}: holds no time record (dataset 58, function type 1); it has datasets"
             f" {sorted(set(types))}{', function types ' + ', '.join(found) if found else ''}:"
-            " export the time histories"
+            f" {remedy}"
         )
     return _with_own_names(signals)
 
@@ -88,7 +91,7 @@ def _with_own_names(signals):
     return signals
 
 
-def _datasets(path):
+def read_datasets(path: str | Path) -> tuple[list[int], dict[int, dict]]:
     """Return (number of each dataset, {index: content} of those that are read).
 
     Raises ImportProblem for a file that is damaged: pyuff leaves out what it can not name.
@@ -147,7 +150,7 @@ def _is_time_record(data):
 def _signal(data, path, nodes, units):
     """Return the Signal of one dataset 58."""
     node, axis = int(data["rsp_node"]), int(data["rsp_dir"])
-    name = f"{node}:{_axis_text(axis)}"
+    name = node_name(node, axis)
     place = f"{path}, {name}"
     values, stated = np.asarray(data["data"], float), int(data["num_pts"])
     if not 1 < stated == values.size:
@@ -164,7 +167,7 @@ def _signal(data, path, nodes, units):
         values, rate, note = even_samples(time, values, place)
         start = time[0]
     type_ = int(data["ordinate_spec_data_type"])
-    unit, unit_from = _unit(data, type_, units)
+    unit, unit_from = unit_of(data, type_, units)
     direction = tuple(np.sign(axis) * np.eye(3)[abs(axis) - 1]) if abs(axis) in AXES else None
     aliases = tuple(
         text
@@ -207,15 +210,17 @@ def _second(data, place):
         raise ImportProblem(f"{place}: its abscissa {error}") from error
 
 
-def _axis_text(axis):
-    return f"{'+' if axis > 0 else '-'}{AXES[abs(axis)]}" if abs(axis) in AXES else str(axis)
+def node_name(node: int, axis: int) -> str:
+    """Return how a node and its direction, 1 to 3 or -3 to -1, are named: 12:+y."""
+    text = f"{'+' if axis > 0 else '-'}{AXES[abs(axis)]}" if abs(axis) in AXES else str(axis)
+    return f"{node}:{text}"
 
 
 def _text(value):
     return str(value or "").strip()
 
 
-def _unit(data, type_, units):
+def unit_of(data: dict, type_: int, units: dict | None) -> tuple[str, str]:
     """Return (unit as UDUNITS text, where it is stated); "" where the file does not state it.
 
     It is the axis label, else dataset 164 with the type of the ordinate.
@@ -233,7 +238,7 @@ def _unit(data, type_, units):
     return unit if abs(factor - 1.0) < 1e-9 else f"{factor:.12g} {unit}", "dataset 164"
 
 
-def _nodes(tables, units, path):
+def nodes_of(tables: list[dict], units: dict | None, path: str | Path) -> dict[int, tuple]:
     """Return {node: (x, y, z) in m} of datasets 15 and 2411.
 
     Empty without dataset 164, which gives their unit. Raises ImportProblem for incomplete nodes and
