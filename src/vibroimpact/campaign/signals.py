@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.spectra.periodic_lines import PeriodError, find_period
-from vibroimpact.spectra.welch import segment_spectra
+from vibroimpact.spectra.welch import SegmentSpectra, segment_spectra
 
 from .file import (
     CampaignError,
@@ -279,17 +279,17 @@ def transfer_or_reason(signals: CampaignSignals, record: int) -> Transfer | str:
     """Return the Transfer from force channel 0 of a record, at lines that the force excites within
     the stated band; a sentence without a full stop where no average of that kind is possible.
     """
-    force, response = signals.force[record][:1], signals.response[record]
-    if force.shape[-1] < 2:
-        return f"record {signals.records[record]} has no two samples"
-    if 0 < blows(force[0]) < FEWEST_BLOWS:
+    name, force = signals.records[record], signals.force[record][:1]
+    number = blows(force[0])
+    if 0 < number < FEWEST_BLOWS:
         return (
-            f"record {signals.records[record]} holds {blows(force[0])} of the {FEWEST_BLOWS} blows"
-            " of a hammer that an average takes: record several in one file"
+            f"record {name} holds {number} of the {FEWEST_BLOWS} blows of a hammer that an average"
+            " takes: record several in one file"
         )
-    force = force - force.mean()
-    response = np.nan_to_num(response)
-    response = response - response.mean(axis=-1, keepdims=True)
+    force, response = (
+        values - values.mean(axis=-1, keepdims=True)
+        for values in (force, np.nan_to_num(signals.response[record]))
+    )
     averaging = Averaging(
         min(SEGMENT_S, force.shape[-1] / signals.rate / (0.5 * FEWEST_SEGMENTS + 0.5))
     )
@@ -297,41 +297,44 @@ def transfer_or_reason(signals: CampaignSignals, record: int) -> Transfer | str:
         start = signals.period_samples * signals.transient_periods
         whole = (force.shape[-1] - start) // signals.period_samples * signals.period_samples
         if whole < 2 * signals.period_samples:
-            return f"record {signals.records[record]} holds no two periods after the transient"
+            return f"record {name} holds no two periods after the transient"
         force, response = force[:, start : start + whole], response[:, start : start + whole]
         averaging = Averaging(signals.period_samples / signals.rate, 0.0, "boxcar")
     if averaging.segment_s * signals.rate < SHORTEST_SEGMENT:
-        return (
-            f"record {signals.records[record]} has {force.shape[-1]} samples, averages take"
-            f" {FEWEST_SAMPLES}"
-        )
+        return f"record {name} has {force.shape[-1]} samples, averages take {FEWEST_SAMPLES}"
     spectra = segment_spectra(np.concatenate([force, response]), signals.rate, averaging)
     force_psd = np.mean(np.abs(spectra.values[0]) ** 2, axis=0)
     kept = _excited(force_psd)
-    if signals.stated_band is not None:
-        low, high = signals.stated_band
-        kept &= (spectra.frequency >= low) & (spectra.frequency <= high)
+    low, high = signals.stated_band or (0.0, np.inf)
+    kept &= (spectra.frequency >= low) & (spectra.frequency <= high)
     if kept.sum() < FEWEST_LINES:
-        power = np.where(kept, force_psd, 0.0)
-        where = power @ spectra.frequency / max(power.sum(), np.finfo(float).tiny)
+        where = np.average(spectra.frequency, weights=force_psd * kept + np.finfo(float).tiny)
         return (
-            f"{signals.forces[0]} excites {kept.sum()} lines of the spectrum of record"
-            f" {signals.records[record]}, about {where:.3g} Hz, as a sine does, where"
-            f" {FEWEST_LINES} are needed: take a force of many frequencies"
+            f"{signals.forces[0]} excites {kept.sum()} lines of the spectrum of record {name},"
+            f" about {where:.3g} Hz, as a sine does, where {FEWEST_LINES} are needed: take a force"
+            " of many frequencies"
         )
-    values = spectra.values[:, :, kept]
+    return _at_lines(spectra, force_psd, kept)
+
+
+def _at_lines(spectra: SegmentSpectra, force_psd: np.ndarray, kept: np.ndarray) -> Transfer:
+    """Return the Transfer from the first row of segment spectra to the others, at the kept lines.
+
+    force_psd, kept (line,): PSD of the force, and which lines are kept.
+    """
+    values, tiny = spectra.values[:, :, kept], np.finfo(float).tiny
     cross = np.mean(values[1:] * values[0].conj(), axis=1)
     psd = np.mean(np.abs(values[1:]) ** 2, axis=1)
-    coherence = np.abs(cross) ** 2 / np.maximum(psd * force_psd[kept], np.finfo(float).tiny)
-    step, explained = spectra.frequency[1], np.cumsum(coherence * psd, axis=-1)
-    reached = explained >= RESPONDING * np.maximum(explained[:, -1:], np.finfo(float).tiny)
+    coherence = np.abs(cross) ** 2 / np.maximum(psd * force_psd[kept], tiny)
+    explained = np.cumsum(coherence * psd, axis=-1)
+    reached = explained >= RESPONDING * np.maximum(explained[:, -1:], tiny)
     lowest = [np.argmax(line) for line in reached if line.any()]
     return Transfer(
         spectra.frequency[kept],
         cross / force_psd[kept],
         coherence,
-        psd.sum(axis=-1) * step,
-        explained[:, -1] / np.maximum(psd.sum(axis=-1), np.finfo(float).tiny),
+        psd.sum(axis=-1) * spectra.frequency[1],
+        explained[:, -1] / np.maximum(psd.sum(axis=-1), tiny),
         values.shape[1],
         float(spectra.frequency[kept][min(lowest, default=0)]),
     )

@@ -32,11 +32,8 @@ def read_csv(path: str | Path) -> list[Signal]:
     text, note = read_encoded(path)
     if text.startswith(LABVIEW):
         raise ImportProblem(f"{path}: {UNREAD['.lvm']}")
-    numbered = [
-        (number, line.rstrip("\n"))
-        for number, line in enumerate(io.StringIO(text, newline=None), start=1)
-        if line.strip()
-    ]
+    rows = enumerate(io.StringIO(text, newline=None), start=1)
+    numbered = [(number, line.rstrip("\n")) for number, line in rows if line.strip()]
     lines = [(number, line) for number, line in numbered if line[0] not in COMMENT]
     if len(lines) < 2:
         raise ImportProblem(

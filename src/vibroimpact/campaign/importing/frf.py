@@ -47,25 +47,15 @@ def read_frfs(path: str | Path) -> FrequencyResponses:
     ]
     if not functions:
         raise ImportProblem(f"{path}: holds no frequency response (dataset 58, function type 4)")
-    ends = {
-        end: [(int(data[f"{end}_node"]), int(data[f"{end}_dir"])) for data in functions]
-        for end in ("rsp", "ref")
-    }
-    roving = len({*ends["ref"]}) > 1
-    fixed, moving = ("rsp", "ref") if roving else ("ref", "rsp")
-    if len({*ends[fixed]}) > 1:
-        raise ImportProblem(
-            f"{path}: has {len({*ends['ref']})} forces and {len({*ends['rsp']})} responses: write"
-            " the responses to one force, or those at one place, to a file"
-        )
+    moving, fixed = _ends(functions, path)
     kinds = [_kind(data, path) for data in functions]
     channels = [
         _channel(node, axis, kind, nodes, path)
-        for (node, axis), kind in zip(ends[moving], kinds, strict=True)
+        for (node, axis), kind in zip(moving, kinds, strict=True)
     ]
-    drive = _channel(*ends[fixed][0], FORCE, nodes, path)
+    drive = _channel(*fixed, FORCE, nodes, path)
     names = [channel.name for channel in channels]
-    if len({*names}) < len(names) or roving and len({*kinds}) > 1:
+    if len({*names}) < len(names):
         raise ImportProblem(f"{path}: {', '.join(names)}: leave one frequency response of each")
     lines = [_lines(data, kind, units, path) for data, kind in zip(functions, kinds, strict=True)]
     frequency = lines[0][0]
@@ -74,6 +64,22 @@ def read_frfs(path: str | Path) -> FrequencyResponses:
     h1 = np.array([each[1] for each in lines])
     kept = (frequency > 0.0) & np.isfinite(h1).all(axis=0)
     return FrequencyResponses(frequency[kept], h1[:, kept], channels, drive)
+
+
+def _ends(functions, path):
+    """Return ((node, axis) of each channel, that of the force): of the responses, or of the forces
+    where those moved.
+    """
+    responses, forces = (
+        [(int(data[f"{end}_node"]), int(data[f"{end}_dir"])) for data in functions]
+        for end in ("rsp", "ref")
+    )
+    if len({*forces}) > 1 and len({*responses}) > 1:
+        raise ImportProblem(
+            f"{path}: has {len({*forces})} forces and {len({*responses})} responses: write the"
+            " responses to one force, or those at one place, to a file"
+        )
+    return (forces, responses[0]) if len({*forces}) > 1 else (responses, forces[0])
 
 
 def _kind(data, path):
