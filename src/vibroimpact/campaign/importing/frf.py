@@ -53,7 +53,7 @@ def read_frfs(path: str | Path) -> FrequencyResponses:
         _channel(node, axis, kind, nodes, path)
         for (node, axis), kind in zip(moving, kinds, strict=True)
     ]
-    drive = _channel(*fixed, FORCE, nodes, path)
+    drive = _channel(fixed[0], fixed[1], FORCE, nodes, path)
     names = [channel.name for channel in channels]
     if len({*names}) < len(names):
         raise ImportProblem(f"{path}: {', '.join(names)}: leave one frequency response of each")
