@@ -115,9 +115,9 @@ def _caption(campaign, measured, panels, left_out):
     return (
         f"Campaign: {source}. PSD of each force and response in SI units, Hann windows, mean power"
         f" in bins of 1/{BINS_PER_OCTAVE} octave, one curve per record, light for high loads;"
-        " dashed: held out. The shaded band is what the force excites. Last panel: RMS of each"
-        " response about its mean over its RMS at the lowest level; a linear structure follows the"
-        f" grey line.{hidden}"
+        " dashed: held out. The shaded band is what the force excites, or what the file states."
+        " Last panel: RMS of each response about its mean over that at the lowest level; a linear"
+        f" structure follows the grey line.{hidden}"
     )
 
 
