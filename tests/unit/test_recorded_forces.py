@@ -151,9 +151,9 @@ def test_a_white_force_is_usable_from_where_averages_do():
     assert not refused(check_campaign(made))
     assert told(made, "record length")[0] == (
         "Record low of 12 s is sure from 3.01 Hz up. The force excites 0.542 Hz and above: state"
-        " band_Hz: [3.01, 256] in campaign.yaml, or record 289 s."
+        " band_Hz: [3.01, 255.7] in campaign.yaml, or record 289 s."
     )
-    stated = campaign(levels_of(random_force(12.0, 1, band=None)), band_Hz=(3.01, 256.0))
+    stated = campaign(levels_of(random_force(12.0, 1, band=None)), band_Hz=(3.01, 255.7))
     assert set(told(stated)) == {"swapped channels"}
 
 

@@ -435,12 +435,13 @@ def _length(measured, spectra):
         # from here on, a band of the comparison holds GOOD_AVERAGES independent averages
         sure = GOOD_AVERAGES / (duration * (10.0 ** (1.0 / BANDS_PER_DECADE) - 1.0))
         if sure > low:
+            stated = f"[{np.ceil(100.0 * sure) / 100.0:g}, {np.floor(10.0 * high) / 10.0:g}]"
             yield check_row(
                 "record length",
                 "warn",
                 f"Record {name} of {duration:.3g} s is sure from {sure:.3g} Hz up. The force"
-                f" excites {low:.3g} Hz and above: state band_Hz: [{sure:.3g}, {high:.3g}] in"
-                f" campaign.yaml, or record {np.ceil(duration * sure / lowest):.0f} s.",
+                f" excites {low:.3g} Hz and above: state band_Hz: {stated} in campaign.yaml, or"
+                f" record {np.ceil(duration * sure / lowest):.0f} s.",
                 name,
             )
     if durations.max() * spectra.responding < FEWEST_PERIODS:
