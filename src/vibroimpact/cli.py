@@ -18,6 +18,7 @@ from vibroimpact.equivalent_support.command import add_arguments
 # Read when numpy is first imported. The matrices are small: threads would wait for each other, and
 # take up to ten times the CPU. Runs are what is done side by side.
 ONE_THREAD = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL")}
+PREFIX = {"warn": "warning: ", "not checked": "{check}: "}  # of what a check says
 NETCDF = (".nc", ".nc4", ".cdf")
 # How netCDF files begin, of the classic format and of HDF5.
 SIGNATURES = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF")
@@ -117,6 +118,19 @@ def _parser() -> argparse.ArgumentParser:
         " the verdict. The exit code is 1 where the campaign can not be compared with the model.",
     )
     diagnose_command.add_arguments(diagnosis)
+    compare = commands.add_parser(
+        "compare",
+        help="hold measured frequency responses to the linear model",
+        description="Print the modes of measured frequency responses beside those of the linear"
+        " model, and which channels contradict it: swapped, reversed, or in another unit. The file"
+        " is a universal file with frequency responses (dataset 58, function type 4) of one force,"
+        " or of one accelerometer under a roving hammer, with its nodes; or a measured campaign,"
+        " of which the record of the lowest load is taken. Supports are taken without contact. The"
+        " exit code is 1 where nothing can be compared.",
+    )
+    compare.add_argument("file", metavar="FILE")
+    compare.add_argument("--model", metavar="FILE", required=True, help="configuration")
+    compare.set_defaults(command=_compare)
     supports = commands.add_parser(
         "supports",
         help="print the contact forces at the supports of a measured structure, from its sensors",
@@ -146,6 +160,44 @@ def _check(options: argparse.Namespace) -> int:
     if summary:
         print(f"{options.file}: {summary}")
     return 0 if summary else 1
+
+
+def _compare(options: argparse.Namespace) -> int:
+    """Hold frequency responses to a linear model. Return 1 where it can not be done."""
+    from vibroimpact.campaign.file import CampaignError, read_campaign
+    from vibroimpact.campaign.importing.frf import read_frfs
+    from vibroimpact.campaign.importing.signals import ImportProblem
+    from vibroimpact.config.problems import ConfigError
+    from vibroimpact.config.reading import load_config
+    from vibroimpact.diagnosis.measurement.comparable import comparison_problems
+    from vibroimpact.records import RecordError
+    from vibroimpact.reports.linear_comparison import (
+        NotComparable,
+        comparison_text,
+        described,
+        linear_comparison,
+        lowest_responses,
+    )
+
+    try:
+        config = load_config(options.model)
+        if _is_netcdf(options.file):
+            campaign = read_campaign(options.file)
+            spectra = lowest_responses(campaign)
+        else:
+            campaign, spectra = described(read_frfs(options.file))
+        problems = comparison_problems(config, campaign)
+        if problems:
+            raise NotComparable("\n".join(problems))
+        lines = comparison_text(*linear_comparison(config, campaign, spectra))
+    except NotComparable as problem:
+        print(f"{options.file}: {problem}", file=sys.stderr)
+        return 1
+    except (ImportProblem, RecordError, CampaignError, ConfigError, ValueError, OSError) as error:
+        print(error, file=sys.stderr)
+        return 1
+    print("\n".join(lines))
+    return 0
 
 
 def _new(options: argparse.Namespace) -> int:
@@ -198,9 +250,9 @@ def _campaign(path: str) -> tuple[str | None, list[str]]:
     from vibroimpact.campaign.checks.file_checks import check_file, refused
     from vibroimpact.diagnosis.measurement.comparable import campaign_problems, channel_rows
 
-    campaign, rows = check_file(path)
+    campaign, rows = check_file(path, unmade=True)
     problems = [
-        f"{path}: {'warning: ' if row['level'] == 'warn' else ''}{row['message']}"
+        f"{path}: {PREFIX.get(row['level'], '').format(**row)}{row['message']}"
         for row in rows
         if row["level"] != "pass"
     ]

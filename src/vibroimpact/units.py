@@ -58,11 +58,14 @@ ALIASES = {
     "standard_free_fall": "standard_gravity",
     "mil": "thou",
     "mils": "thou",
+    "ips": "inch/second",
+    "KN": "kN",
     "strain": "m/m",
     "microstrain": "um/m",
     "µstrain": "um/m",
     "ustrain": "um/m",
 }
+WORD = re.compile(r"[A-Za-z]{3,}")  # a name; shorter ones are symbols, in which m is not M
 SHARE_OF_G = re.compile(r"(milli|m|µ|u)?[gG](?:'?s)?")
 # A number before the unit, as in 0.001 m.
 SCALED = re.compile(r"(\d+(?:\.\d*)?(?:[eE][+-]?\d+)?)\s+(\D.*)")
@@ -101,7 +104,7 @@ def si_factor(units: str, kind: str) -> float:
     gravity = SHARE_OF_G.fullmatch(text) if "acceleration" in _kinds(kind) else None
     if gravity:
         return STANDARD_GRAVITY * PREFIX[gravity[1]]
-    dimension, factor = _parsed(text)
+    dimension, factor = _parsed(_spelled(text))
     if kind == "generic" or any(dimension == _dimension_of(known) for known in _kinds(kind)):
         return factor
     hint = (
@@ -124,10 +127,10 @@ def si_unit(units: str, kind: str) -> str:
         if units.strip() in COMMON:
             same = _fits(COMMON[units.strip()][0], known)
         else:
-            same = _parsed(units.strip())[0] == _dimension_of(known)
+            same = _parsed(_spelled(units.strip()))[0] == _dimension_of(known)
         if same:
             return SI_OF_KIND[known]
-    text = _translated(SCALED.sub(r"\2", units.strip()))
+    text = _translated(SCALED.sub(r"\2", _spelled(units.strip())))
     base = _registry().Quantity(1.0, text).to_base_units().units
     return f"{base:~}".replace("**", "^") or "1"
 
@@ -152,6 +155,18 @@ def _registry() -> Any:
 @cache
 def _dimension_of(kind: str) -> Any:
     return _parsed(SI_OF_KIND[kind])[0]
+
+
+def _spelled(text: str) -> str:
+    """Return a unit text as pint spells it: names that it does not know in small letters."""
+    small = WORD.sub(lambda word: word[0].lower(), text)
+    for spelling in (text, small) if small != text else ():
+        try:
+            _parsed(spelling)
+        except UnitError:
+            continue
+        return spelling
+    return text
 
 
 @cache

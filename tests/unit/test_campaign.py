@@ -51,7 +51,7 @@ def test_campaign_file_round_trip(campaign, tmp_path):
         assert read[name].dims == campaign[name].dims
         assert (read[name].values == campaign[name].values).all(), name
     assert read.attrs["sampling_frequency"] == 2048.0 and read.attrs["source"] == "a test"
-    rms = np.sqrt(np.mean(campaign["force"].values[:, 0].astype(float) ** 2, axis=-1))
+    rms = campaign["force"].values[:, 0].astype(float).std(axis=-1)
     np.testing.assert_allclose(read["load_rms"].values, rms, rtol=1e-6)
 
 

@@ -30,7 +30,7 @@ def beam(stretch=1.0, damping=0.01):
 
 def spectra(h1):
     """A Transfer of measured responses per force, fully coherent."""
-    return Transfer(LINES, h1, np.full(h1.shape, 0.98), np.ones(len(h1)), np.ones(len(h1)), 12)
+    return Transfer(LINES, h1, np.full(h1.shape, 0.98), np.ones(len(h1)), np.ones(len(h1)), 12, 5.0)
 
 
 def test_nearly_correct_model_flags_no_channel():
@@ -115,7 +115,7 @@ def test_noise_at_low_frequencies_is_no_other_unit():
     def checks(response):
         ones = np.ones(len(response))
         found = compare_with_model(
-            Transfer(LINES, response, coherence, ones, ones, 12), beam(), NAMES, KINDS
+            Transfer(LINES, response, coherence, ones, ones, 12, 5.0), beam(), NAMES, KINDS
         )
         return [(row["check"], row["channel"]) for row in found]
 

@@ -16,6 +16,7 @@ import yaml
 from vibroimpact.campaign.checks.file_checks import check_campaign, refused
 from vibroimpact.campaign.file import channel_signal, force_signal, read_campaign, write_campaign
 from vibroimpact.campaign.importing.assemble import import_folder
+from vibroimpact.campaign.importing.draft import checked_folder
 from vibroimpact.campaign.importing.report import import_text
 from vibroimpact.campaign.importing.signals import ImportProblem, even_samples
 from vibroimpact.campaign.importing.uff import read_uff
@@ -257,7 +258,7 @@ def test_every_format_gives_the_same_campaign(kind, signals, tmp_path):
         )
     np.testing.assert_allclose(
         campaign["load_rms"].values,
-        [LBF * np.sqrt(np.mean(signals[level][0] ** 2)) for level in ("low", "high")],
+        [LBF * signals[level][0].std() for level in ("low", "high")],
         rtol=1e-6,
     )
     assert campaign["split"].values.tolist() == ["fit", "holdout"] and campaign[
@@ -453,9 +454,10 @@ def test_universal_file_gives_units_and_places(signals, tmp_path):
 def test_incomplete_files_get_a_draft_sidecar(signals, tmp_path):
     write_mat5(tmp_path, signals)
     (tmp_path / "campaign.yaml").unlink()
-    with pytest.raises(ImportProblem) as refusal:
-        import_folder(tmp_path)
-    draft = yaml.safe_load(str(refusal.value).split("\n\n", 1)[1].replace("???", "0"))
+    written = tmp_path / "drafts" / "campaign.yaml"
+    with pytest.raises(ImportProblem, match=f"{written} is a draft"):
+        checked_folder(tmp_path, written)
+    draft = yaml.safe_load(written.read_text(encoding="utf-8").replace("FILL_IN", "0"))
     assert [sensor["variable"] for sensor in draft["channels"]] == ["F", "A[0]", "A[1]"] and len(
         draft["records"]
     ) == 2

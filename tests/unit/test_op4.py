@@ -134,6 +134,22 @@ def test_single_matrix_needs_no_name(tmp_path, op4):
     assert np.array_equal(read_matrix(tmp_path / "more.op4", "mass").toarray(), MASS)
 
 
+@pytest.mark.parametrize("binary", [True, False])
+def test_one_of_several_sets_is_chosen(tmp_path, op4, binary):
+    path = tmp_path / "sets.op4"
+    parts = [np.diag([1.0, 2.0, 3.0]), np.diag([4.0, 5.0]), np.diag([6.0, 7.0])]
+    op4.write(str(path), ["MAA", "KAA", "MAA", "MGG"], [parts[0], STIFFNESS, *parts[1:]], binary)
+    for chosen, matrix in (("aa1", parts[0]), ("aa2", parts[1]), ("gg", parts[2])):
+        assert np.array_equal(read_matrix(path, "mass", chosen).toarray(), matrix)
+    for wrong, told in (
+        ("aa3", "aa3 finds no mass"),
+        ("ll", "ll finds no mass"),
+        ("aa", "aa1 or aa2"),
+    ):
+        with pytest.raises(MatrixFileError, match=told):
+            read_matrix(path, "mass", wrong)
+
+
 def test_unusable_op4_files_are_refused(tmp_path, op4):
     for name, matrices in (
         ("complex", [("MGG", MASS + 1j), ("KGG", STIFFNESS)]),
@@ -156,8 +172,8 @@ def test_unusable_op4_files_are_refused(tmp_path, op4):
         ("complex", "mass is complex: give its real part"),
         ("long", "a square matrix is needed"),
         ("half", "not symmetric"),
-        ("sets", "mgg, maa could each be the mass matrix"),
-        ("twice", "mgg, mgg could each be"),
+        ("sets", "mgg, maa could each be the mass matrix: choose .*op4_set: gg or aa"),
+        ("twice", "mgg, mgg could each be the mass matrix: choose .*op4_set: gg1 or gg2"),
         ("others", "holds kgg, mhh: name the mass matrix M, or as Nastran does, MGG"),
         ("cut", "cannot be read as OP4"),
         ("cut_binary", "cannot be read as OP4"),

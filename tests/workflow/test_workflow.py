@@ -355,6 +355,18 @@ def test_results_of_another_target_are_not_overwritten(study, tmp_path, target, 
     assert "Building DAG" not in told and "Traceback" not in told
 
 
+def test_problems_of_an_import_are_one_paragraph_and_a_draft(study, tmp_path):
+    (tmp_path / "bench").mkdir()
+    (tmp_path / "bench" / "run.csv").write_text("time [s],F [N]\n0,1\n0.001,2\n0.002,3\n")
+    run = study.snakemake("-c1", "import_campaign", "--config", f"import={tmp_path}/bench")
+    told = (run.stdout + run.stderr).strip().split("\n")
+    assert run.returncode == 1 and not any("rule" in line or "Error" in line for line in told)
+    draft = "results/bench/campaign.draft.yaml"
+    assert told[-2].startswith(f"{tmp_path}/bench: there is no campaign.yaml, and the files do not")
+    assert told[-1].startswith(f"{draft} is a draft of campaign.yaml: complete it")
+    assert '{name: "F", variable: "F", unit: "N"' in (study.folder / draft).read_text()
+
+
 def test_campaign_channels_that_no_model_gives_are_told(study, tmp_path):
     campaign = sound_campaign()
     campaign["channel_kind"].values[0], campaign["channel_units"].values[0] = "generic", "V"

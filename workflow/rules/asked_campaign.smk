@@ -66,12 +66,26 @@ def compared_campaign(wildcards):
 def measured_files(wildcards):
     """The files of --config import=FOLDER that are read, as an input function.
 
-    Exits with a sentence where there are none, and where campaign.yaml has a problem.
+    Exits with the problems where they can not be imported, before a job is planned: Snakemake tells
+    of a job that fails in sixty lines.
     """
+    return folder_to_import(REQUEST["import"])
+
+
+@cache
+def folder_to_import(folder):
+    """The files that the import of a folder reads; where there is no campaign.yaml, a draft is
+    written.
+    """
+    from vibroimpact.campaign.importing.draft import checked_folder
     from vibroimpact.campaign.importing.raw_files import raw_files
     from vibroimpact.campaign.importing.signals import ImportProblem
 
     try:
-        return [str(file) for file in raw_files(REQUEST["import"])]
+        if not workflow.is_main_process:
+            return [str(file) for file in raw_files(folder)]
+        return [
+            str(file) for file in checked_folder(folder, f"results/{IMPORTED}/campaign.draft.yaml")
+        ]
     except ImportProblem as problem:
         sys.exit(str(problem))

@@ -10,7 +10,7 @@ from vibroimpact.job_log import redirect_output
 from vibroimpact.records import write_table, write_text
 
 redirect_output(snakemake.log[0])
-campaign, checks = check_file(snakemake.input.campaign)
+campaign, checks = check_file(snakemake.input.campaign, unmade=True)
 print(checks_text(checks)) if campaign is not None else sys.exit(checks_text(checks))
 write_table(checks, snakemake.output.checks, COLUMNS)
 write_text(checks_text(checks), snakemake.output.text)

@@ -19,8 +19,8 @@ Required variables:
 Variables filled in where they are missing (see fill_missing):
 
 - record_name (record), repeat (record), split (record): fit or holdout
-- load_rms (record): N, or m s-2 where that is a base acceleration: RMS of force channel 0 over the
-  valid samples
+- load_rms (record): N, or m s-2 where that is a base acceleration: RMS of force channel 0 about its
+  mean over the valid samples, see load_of
 
 Optional variables:
 
@@ -32,14 +32,16 @@ Optional variables:
 - valid_samples (record): number of samples that count; the rest is NaN
 
 Attributes: sampling_frequency (Hz), antialias, start_up, period_samples (0 if not periodic),
-transient_periods, source. Between samples the force is band-limited, not constant.
+transient_periods, source, band_Hz (low, high: the band that is looked at; without it, what the
+force excites). Between samples the force is band-limited, not constant.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -69,7 +71,7 @@ ABOUT = {
     "force_channel_direction": ("1", "unit vector of the positive sense of the force"),
     "gap": ("m", "radial gap of the record"),
     "record_name": ("", "name of the record"),
-    "load_rms": ("N", "RMS of the force of channel 0 over the valid samples"),
+    "load_rms": ("N", "RMS of the force of channel 0 about its mean, over the valid samples"),
     "repeat": ("1", "number of the record among those of the same load and gap, from 0"),
     "split": ("", "use of the record: fit or holdout"),
     "support_gap": ("m", "radial gap of the support"),
@@ -129,7 +131,7 @@ def campaign_dataset(
     levels: Sequence[Level],
     sampling_frequency: float,
     optional: dict | None = None,
-    **attributes: str | int,
+    **attributes: str | int | tuple[float, float],
 ) -> xr.Dataset:
     """Return the Dataset of a campaign.
 
@@ -139,8 +141,9 @@ def campaign_dataset(
     levels: list of Level, one per record.
     sampling_frequency: Hz.
     optional: {name: values} of optional variables.
-    attributes: source, antialias, start_up, period_samples, transient_periods.
+    attributes: source, antialias, start_up, period_samples, transient_periods, band_Hz.
     """
+    band = band_of(attributes)
     kinds = [BASE if drive.kind == BASE else FORCE for drive in drives]
     factor = [
         _factor(f"force channel {drive.name}", drive.units, BASE if kind == BASE else "excitation")
@@ -173,7 +176,8 @@ def campaign_dataset(
         "record_name": ("record", np.array([level.name for level in levels], dtype=object)),
         "load_rms": (
             "record",
-            factor[0] * np.sqrt(np.nanmean(np.square(np.asarray(force, float)[:, 0]), axis=-1)),
+            factor[0]
+            * np.array([load_of(each[0], sampling_frequency, band) for each in np.asarray(force)]),
             {"units": "m s-2" if kinds[0] == BASE else "N"},
         ),
         "gap": ("record", np.array([level.gap_m for level in levels], float), {"units": "m"}),
@@ -297,8 +301,9 @@ def fill_missing(campaign: xr.Dataset) -> xr.Dataset:
             )
     whole = campaign.assign(new)
     if "load_rms" not in campaign:
-        rms = [_rms(force_signal(whole, record)) for record in range(count)]
-        new["load_rms"] = ("record", np.array(rms), {"units": load_unit(campaign)})
+        rate, band = float(campaign.attrs["sampling_frequency"]), band_of(campaign.attrs)
+        found = [load_of(force_signal(whole, record), rate, band) for record in range(count)]
+        new["load_rms"] = ("record", np.array(found), {"units": load_unit(campaign)})
         assumed.append("load_rms is missing: it was computed from force channel 0")
     loads = new["load_rms"][1] if "load_rms" in new else campaign["load_rms"].values
     if "repeat" not in campaign:
@@ -341,10 +346,30 @@ def _with_real_signals(campaign: xr.Dataset) -> xr.Dataset:
     return campaign.assign({name: campaign[name].astype(float) for name in counts})
 
 
-def _rms(signal: np.ndarray) -> float:
-    """Return the RMS of the samples that are not missing, NaN where all are."""
-    kept = signal[np.isfinite(signal)]
-    return float(np.sqrt(np.mean(np.square(kept)))) if kept.size else float("nan")
+def load_of(force: np.ndarray, rate: float, band_Hz: tuple[float, float] | None = None) -> float:
+    """Return the load of a record: the RMS of its force (time,) about the mean, in its unit.
+
+    A constant reading, such as the offset of an amplifier, is no load. NaN where all samples are
+    missing; others that are missing are left out.
+
+    rate: Hz.
+    band_Hz: only lines within it count; None for all.
+    """
+    kept = force[np.isfinite(force)].astype(float)
+    if not kept.size:
+        return float("nan")
+    if band_Hz is None:
+        return float(kept.std())
+    frequency = np.fft.rfftfreq(kept.size, 1.0 / rate)
+    inside = (frequency >= band_Hz[0]) & (frequency <= band_Hz[1]) & (frequency > 0.0)
+    lines = np.where(inside, np.fft.rfft(kept), 0.0)
+    return float(np.fft.irfft(lines, kept.size).std())
+
+
+def band_of(attributes: Mapping[str, Any]) -> tuple[float, float] | None:
+    """Return the band (low, high) in Hz that the attributes of a campaign state, or None."""
+    band = attributes.get("band_Hz")
+    return None if band is None else (float(band[0]), float(band[1]))
 
 
 def _last_finite(campaign: xr.Dataset) -> np.ndarray:

@@ -13,14 +13,25 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.spectra.periodic_lines import PeriodError, find_period
-from vibroimpact.spectra.welch import segment_spectra
+from vibroimpact.spectra.welch import SegmentSpectra, segment_spectra
 
-from .file import CampaignError, channel_factor, force_factor, measured_values
+from .file import (
+    CampaignError,
+    band_of,
+    channel_factor,
+    force_factor,
+    load_of,
+    measured_values,
+)
 from .force_kinds import force_kinds
 
 SEGMENT_S = 8.0
 FEWEST_SEGMENTS = 12
 SHORTEST_SEGMENT = 64  # samples
+AT_REST, IN_BLOWS = 0.1, 0.05  # of the largest blow; of the samples of a force
+FEWEST_BLOWS = 3  # that an average takes
+FEWEST_LINES = 8  # that a force excites
+RESPONDING = 0.01  # of the power of a response
 # Of a record whose spectra can be averaged: FEWEST_SEGMENTS that overlap by half.
 FEWEST_SAMPLES = SHORTEST_SEGMENT * (FEWEST_SEGMENTS + 1) // 2
 EXCITED_SHARE = 0.01  # of the typical PSD of the force: lines below it are not excited
@@ -46,7 +57,8 @@ class CampaignSignals:
     rate: sampling frequency, Hz.
     records, channels, forces: names. kinds (channel,). force_kinds (force_channel,), see
     campaign.force_kinds. splits (record,): "fit" or "holdout".
-    load_rms (record,): N, or m/s² of a base, as stated, or that of the force where it differs.
+    load_rms (record,): N, or m/s² of a base, as stated, or that of the force where it differs, see
+    file.load_of.
     gap (record,): m, NaN where there is none.
     points (channel, xyz): m.
     directions (channel, xyz), force_directions (force_channel, xyz): unit vectors.
@@ -58,6 +70,7 @@ class CampaignSignals:
     factors (channel,), force_factors (force_channel,): SI units per stored unit.
     unit_faults, force_unit_faults: {channel index: sentence} of signals whose unit can not be used;
     they stay in their stored unit, with a factor of 1.
+    stated_band: Hz, the band that the file states, or None.
     """
 
     rate: float
@@ -81,6 +94,7 @@ class CampaignSignals:
     force_factors: np.ndarray
     unit_faults: dict[int, str]
     force_unit_faults: dict[int, str]
+    stated_band: tuple[float, float] | None = None
 
     @property
     def valid_samples(self) -> np.ndarray:
@@ -133,7 +147,7 @@ def campaign_signals(campaign: xr.Dataset) -> CampaignSignals:
     """Return the CampaignSignals of a campaign Dataset that keeps the contract."""
     factors, faults = _factors(campaign, campaign.sizes["channel"], channel_factor)
     force_factors, force_faults = _factors(campaign, campaign.sizes["force_channel"], force_factor)
-    records = range(campaign.sizes["record"])
+    records, rate = range(campaign.sizes["record"]), float(campaign.attrs["sampling_frequency"])
     force = [
         measured_values(campaign, "force", record) * force_factors[:, None] for record in records
     ]
@@ -145,13 +159,16 @@ def campaign_signals(campaign: xr.Dataset) -> CampaignSignals:
         for name in ("record_name", "channel_name", "force_channel_name", "channel_kind")
     }
     return CampaignSignals(
-        rate=float(campaign.attrs["sampling_frequency"]),
+        rate=rate,
         records=texts["record_name"],
         channels=texts["channel_name"],
         forces=texts["force_channel_name"],
         kinds=texts["channel_kind"],
         force_kinds=force_kinds(campaign),
-        load_rms=_loads(campaign["load_rms"].values.astype(float), force),
+        load_rms=_loads(
+            campaign["load_rms"].values.astype(float),
+            [load_of(each[0], rate, band_of(campaign.attrs)) for each in force],
+        ),
         gap=campaign["gap"].values.astype(float),
         splits=(
             [str(value) for value in campaign["split"].values]
@@ -170,28 +187,31 @@ def campaign_signals(campaign: xr.Dataset) -> CampaignSignals:
         force_factors=force_factors,
         unit_faults=faults,
         force_unit_faults=force_faults,
+        stated_band=band_of(campaign.attrs),
     )
 
 
-def rms_of_force(force: np.ndarray) -> float:
-    """Return the RMS of the first force of (force_channel, sample), NaN where a sample is."""
-    return float(np.sqrt(np.mean(np.square(force[0])))) if force.size else float("nan")
+def blows(force: np.ndarray) -> int:
+    """Return how many blows of a hammer a force (time,) consists of, 0 where it does not: it is at
+    rest but for few samples. Between blows a window may have set it to exact zeros.
+    """
+    if not np.isfinite(force).any():
+        return 0
+    size = np.abs(force - np.nanmedian(force))
+    hit = size > AT_REST * np.nanmax(size)
+    number = int(hit[0]) + int(np.count_nonzero(hit[1:] & ~hit[:-1]))
+    return number if 0.0 < hit.mean() < IN_BLOWS else 0
 
 
 def is_load(stated: float, found: float) -> bool:
-    """Return whether a stated load is the RMS of the force, where that is known."""
+    """Return whether a stated load is that of the force, where that is known."""
     return not np.isfinite(found) or abs(found - stated) <= LOAD_TOLERANCE * max(found, 1e-300)
 
 
-def _loads(stated: np.ndarray, forces: list[np.ndarray]) -> np.ndarray:
-    """Return (record,) the stated loads, the RMS of the force where they are not that."""
-    found = [rms_of_force(force) for force in forces]
-    return np.array(
-        [
-            load if is_load(load, rms) else rms
-            for load, rms in zip(stated.tolist(), found, strict=True)
-        ]
-    )
+def _loads(stated: np.ndarray, found: list[float]) -> np.ndarray:
+    """Return (record,) the stated loads, those of the force where they are not that."""
+    pairs = zip(stated.tolist(), found, strict=True)
+    return np.array([load if is_load(load, own) else own for load, own in pairs])
 
 
 def common_period(forces: list[np.ndarray]) -> int:
@@ -236,6 +256,8 @@ class Transfer:
     power (channel,): mean square of the responses in the band.
     following (channel,): share of that power which follows the force, 0 to 1.
     averages: number of segments.
+    responding: Hz, the lowest frequency of the response: below it lies RESPONDING of the power that
+    follows the force, of the channel in which that begins lowest.
     """
 
     frequency: np.ndarray
@@ -244,14 +266,30 @@ class Transfer:
     power: np.ndarray
     following: np.ndarray
     averages: int
+    responding: float
 
 
 def transfer(signals: CampaignSignals, record: int) -> Transfer | None:
-    """Return the Transfer from force channel 0 of a record, at lines that the force excites.
+    """Return the Transfer of a record; None where transfer_or_reason returns a reason."""
+    found = transfer_or_reason(signals, record)
+    return found if isinstance(found, Transfer) else None
 
-    None for a record too short to average.
+
+def transfer_or_reason(signals: CampaignSignals, record: int) -> Transfer | str:
+    """Return the Transfer from force channel 0 of a record, at lines that the force excites within
+    the stated band; a sentence without a full stop where no average of that kind is possible.
     """
-    force, response = signals.force[record][:1], signals.response[record]
+    name, force = signals.records[record], signals.force[record][:1]
+    number = blows(force[0])
+    if 0 < number < FEWEST_BLOWS:
+        return (
+            f"record {name} holds {number} of the {FEWEST_BLOWS} blows of a hammer that an average"
+            " takes: record several in one file"
+        )
+    force, response = (
+        values - values.mean(axis=-1, keepdims=True)
+        for values in (force, np.nan_to_num(signals.response[record]))
+    )
     averaging = Averaging(
         min(SEGMENT_S, force.shape[-1] / signals.rate / (0.5 * FEWEST_SEGMENTS + 0.5))
     )
@@ -259,30 +297,46 @@ def transfer(signals: CampaignSignals, record: int) -> Transfer | None:
         start = signals.period_samples * signals.transient_periods
         whole = (force.shape[-1] - start) // signals.period_samples * signals.period_samples
         if whole < 2 * signals.period_samples:
-            return None
+            return f"record {name} holds no two periods after the transient"
         force, response = force[:, start : start + whole], response[:, start : start + whole]
         averaging = Averaging(signals.period_samples / signals.rate, 0.0, "boxcar")
     if averaging.segment_s * signals.rate < SHORTEST_SEGMENT:
-        return None
-    spectra = segment_spectra(
-        np.concatenate([force, np.nan_to_num(response)]), signals.rate, averaging
-    )
+        return f"record {name} has {force.shape[-1]} samples, averages take {FEWEST_SAMPLES}"
+    spectra = segment_spectra(np.concatenate([force, response]), signals.rate, averaging)
     force_psd = np.mean(np.abs(spectra.values[0]) ** 2, axis=0)
     kept = _excited(force_psd)
-    if kept.sum() < 8:
-        return None
-    values = spectra.values[:, :, kept]
+    low, high = signals.stated_band or (0.0, np.inf)
+    kept &= (spectra.frequency >= low) & (spectra.frequency <= high)
+    if kept.sum() < FEWEST_LINES:
+        where = np.average(spectra.frequency, weights=force_psd * kept + np.finfo(float).tiny)
+        return (
+            f"{signals.forces[0]} excites {kept.sum()} lines of the spectrum of record {name},"
+            f" about {where:.3g} Hz, as a sine does, where {FEWEST_LINES} are needed: take a force"
+            " of many frequencies"
+        )
+    return _at_lines(spectra, force_psd, kept)
+
+
+def _at_lines(spectra: SegmentSpectra, force_psd: np.ndarray, kept: np.ndarray) -> Transfer:
+    """Return the Transfer from the first row of segment spectra to the others, at the kept lines.
+
+    force_psd, kept (line,): PSD of the force, and which lines are kept.
+    """
+    values, tiny = spectra.values[:, :, kept], np.finfo(float).tiny
     cross = np.mean(values[1:] * values[0].conj(), axis=1)
     psd = np.mean(np.abs(values[1:]) ** 2, axis=1)
-    coherence = np.abs(cross) ** 2 / np.maximum(psd * force_psd[kept], np.finfo(float).tiny)
-    step = spectra.frequency[1]
+    coherence = np.abs(cross) ** 2 / np.maximum(psd * force_psd[kept], tiny)
+    explained = np.cumsum(coherence * psd, axis=-1)
+    reached = explained >= RESPONDING * np.maximum(explained[:, -1:], tiny)
+    lowest = [np.argmax(line) for line in reached if line.any()]
     return Transfer(
         spectra.frequency[kept],
         cross / force_psd[kept],
         coherence,
-        psd.sum(axis=-1) * step,
-        np.sum(coherence * psd, axis=-1) / np.maximum(psd.sum(axis=-1), np.finfo(float).tiny),
+        psd.sum(axis=-1) * spectra.frequency[1],
+        explained[:, -1] / np.maximum(psd.sum(axis=-1), tiny),
         values.shape[1],
+        float(spectra.frequency[kept][min(lowest, default=0)]),
     )
 
 

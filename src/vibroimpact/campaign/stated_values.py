@@ -180,6 +180,14 @@ def _attribute_problems(campaign: xr.Dataset) -> Iterator[str]:
                 f" samples of a period of the force, {SHORTEST_PERIOD} to {samples}, or 0 where it"
                 " does not repeat"
             )
+    if "band_Hz" in attributes:
+        low, high = _pair(attributes["band_Hz"])
+        nyquist = 0.5 * number_of(attributes.get("sampling_frequency", np.nan))
+        if not 0.0 <= low < high or high > nyquist:
+            yield (
+                f"band_Hz = {_shown(attributes['band_Hz'])} is no band: write the lowest and the"
+                f" highest frequency in Hz, up to half the sampling frequency, {nyquist:g} Hz"
+            )
     if "transient_periods" in attributes:
         transient = number_of(attributes["transient_periods"])
         if not (0.0 <= transient <= 1.0e6 and transient.is_integer()):
@@ -205,6 +213,13 @@ def number_of(value: Any) -> float:
     if isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool):
         return float(value)
     return float("nan")
+
+
+def _pair(value: Any) -> tuple[float, float]:
+    """Return the two real numbers of an attribute; NaN for anything else."""
+    if not isinstance(value, str) and np.shape(value) == (2,):
+        return number_of(value[0]), number_of(value[1])
+    return float("nan"), float("nan")
 
 
 def _shown(value: Any) -> str:

@@ -26,6 +26,7 @@ from .quantities import (
     Non_negative,
     Not_empty,
     Number,
+    Pattern,
     Range,
     Rotation_stiffness,
     Section,
@@ -219,6 +220,22 @@ class Matrices(Section):
         " the top-level `damping`."
         + MATRIX_FILE.format(name="damping", letter="C", small="c", letter_op4="B"),
         examples=["matrices/damping.mtx"],
+    )
+    op4_set: (
+        Annotated[
+            str,
+            Pattern(
+                "a set of Nastran, with its number where the file holds several of them, as aa2",
+                r"(gg|nn|ff|aa|ll|xx)([1-9]\d?)?",
+            ),
+        ]
+        | None
+    ) = Field(
+        None,
+        description="Which matrices of an OP4 file are read where several would do: the set of"
+        " Nastran, `gg`, `nn`, `ff`, `aa`, `ll` or `xx`, and its number where the file holds the"
+        " matrices of several structures, as `aa2` of the second.",
+        examples=["aa2"],
     )
     points: dict[
         Name,

@@ -31,11 +31,13 @@ class MatrixFileError(ForeignFileError):
     """A matrix file that cannot be used; the message names it, what it holds and the remedy."""
 
 
-def read_matrix(path: str | Path, name: str) -> sparse.csr_array:
+def read_matrix(path: str | Path, name: str, op4_set: str | None = None) -> sparse.csr_array:
     """Return the symmetric real matrix (dof, dof) of a .npz, .mat, .mtx or .op4 file.
 
     name: mass, stiffness or damping; it chooses among several arrays. A MatrixMarket file or a
         scipy.sparse .npz holds one matrix.
+    op4_set: the set of Nastran in an OP4 file, such as aa, and its number where there are several:
+        aa2.
 
     Raises MatrixFileError.
     """
@@ -48,7 +50,7 @@ def read_matrix(path: str | Path, name: str) -> sparse.csr_array:
         raise MatrixFileError(f"{path}: ends in none of {', '.join(READERS)}")
     try:
         with refused_if_damaged(path, f"a matrix file {path.suffix.lower()}", "write it anew"):
-            matrix = READERS[path.suffix.lower()](path, name)
+            matrix = READERS[path.suffix.lower()](path, name, op4_set)
             return _symmetric(path, name, _real(path, name, matrix))
     except MatrixFileError:
         raise
@@ -98,7 +100,7 @@ def _symmetric(path: Path, name: str, matrix: sparse.csr_array) -> sparse.csr_ar
     return (0.5 * (matrix + matrix.T)).tocsr()
 
 
-def _npz(path: Path, name: str) -> Any:
+def _npz(path: Path, name: str, op4_set: str | None) -> Any:
     """Return a matrix of a .npz file. Raises ForeignFileError."""
     arrays = load_npz(path)
     if "format" not in arrays:
@@ -108,14 +110,14 @@ def _npz(path: Path, name: str) -> Any:
         return sparse.load_npz(file)
 
 
-def _mat(path: Path, name: str) -> Any:
+def _mat(path: Path, name: str, op4_set: str | None) -> Any:
     """Return a matrix of a .mat file. Raises ForeignFileError."""
     arrays = load_matlab(path)
     variables = [each for each in arrays if "." not in each]  # the others are fields of structures
     return arrays[_choose_letter(path, variables, name)]
 
 
-def _mtx(path: Path, name: str) -> Any:
+def _mtx(path: Path, name: str, op4_set: str | None) -> Any:
     """Return the matrix of a MatrixMarket file. Raises ForeignFileError."""
     return read_matrix_market(path, MOST_ROWS)
 
@@ -125,7 +127,7 @@ def _choose_letter(path, names, name):
     return _choose(path, names, [name, *LETTERS[name]], f"name the {name} matrix '{name}'")
 
 
-def _op4(path: Path, name: str) -> Any:
+def _op4(path: Path, name: str, op4_set: str | None) -> Any:
     """Return a matrix of an OP4 file, ASCII or binary. Raises MatrixFileError."""
     try:
         from pyyeti.nastran import op4  # imported here: it takes seconds, only OP4 needs it
@@ -135,35 +137,45 @@ def _op4(path: Path, name: str) -> Any:
         ) from error
     with refused_if_damaged(path, "OP4", "write it anew with OUTPUT4"):
         names, sizes = op4.dir(str(path), verbose=False)[:2]
-        chosen = _choose_op4(path, names, name)
-        rows, columns = (abs(int(size)) for size in sizes[names.index(chosen)])
+        chosen = _choose_op4(path, names, name, op4_set)
+        rows, columns = (abs(int(size)) for size in sizes[chosen])
         _require_shape(path, name, (rows, columns))
-        require_size(path, 8.0 * rows * columns, chosen)
-        return op4.read(str(path), chosen, sparse=None)[chosen]
+        require_size(path, 8.0 * rows * columns, names[chosen])
+        earlier = names[:chosen].count(names[chosen])  # of the same name
+        return op4.load(str(path), [names[chosen]], into="list", sparse=None)[1][earlier]
 
 
-def _choose_op4(path: Path, names: list[str], name: str) -> str:
-    """Return the name of the wanted matrix in an OP4 file; names there are in lower case.
+def _choose_op4(path: Path, names: list[str], name: str, op4_set: str | None) -> int:
+    """Return the place of the wanted matrix in an OP4 file; names there are in lower case.
 
-    In order: mass (or stiffness, damping), its letter, one of Nastran's names (mgg, maa, ...), the
-    only matrix of the file. Raises MatrixFileError where two names fit equally.
+    In order: of the wanted set, mass (or stiffness, damping), its letter, one of Nastran's names
+    (mgg, maa, ...), the only matrix of the file. Raises MatrixFileError where two fit equally.
     """
     letters = OP4_LETTERS[name]
     plain = [wanted for wanted in (name[:OP4_NAME_LENGTH], *letters) if wanted in names]
     wanted = plain[:1] or [letters[-1] + of_set for of_set in OP4_SETS]
-    fitting = [each for each in names if each in wanted]
+    if op4_set is not None:
+        wanted = [letters[-1] + op4_set[:2]]
+    fitting = [place for place, each in enumerate(names) if each in wanted]
+    if op4_set is not None and op4_set[2:]:
+        fitting = fitting[int(op4_set[2:]) - 1 :][:1]
     if len(fitting) > 1:
+        found = [names[place] for place in fitting]
+        sets = [
+            each[1:] + (str(found[: index + 1].count(each)) if found.count(each) > 1 else "")
+            for index, each in enumerate(found)
+        ]
         raise MatrixFileError(
-            f"{path}: {', '.join(fitting)} could each be the {name} matrix: leave one of them in"
-            " the file"
+            f"{path}: {', '.join(found)} could each be the {name} matrix: choose with"
+            f" structure.op4_set: {' or '.join(sets)}"
         )
-    return _choose(
-        path,
-        names,
-        fitting,
-        f"name the {name} matrix {letters[-1].upper()}, or as Nastran does,"
-        f" {letters[-1].upper()}GG",
-    )
+    letter = letters[-1].upper()
+    remedy = f"name the {name} matrix {letter}, or as Nastran does, {letter}GG"
+    if op4_set is not None and not fitting:
+        raise MatrixFileError(
+            f"{path}: holds {', '.join(names)}: op4_set = {op4_set} finds no {name} matrix there"
+        )
+    return fitting[0] if fitting else names.index(_choose(path, names, [], remedy))
 
 
 def _choose(path: Path, names: list[str], fitting: list[str], remedy: str) -> str:

@@ -1,6 +1,6 @@
 """Structures that are not tubes: masses on springs, matrices, or measured modes; named points."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -9,6 +9,7 @@ from scipy import sparse
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.contact.supports import ContactPoints, contacts_at_points
 
+from .massless import Condensed, condense_massless
 from .matrix_files import MatrixFileError, read_matrix
 
 AXES = {"x": 0, "y": 1, "z": 2}
@@ -26,6 +27,7 @@ class PointStructure:
     contact: the ContactPoints of its supports.
     contact_points: per contact point, the names of its point and of the other point, None for the
         ground.
+    condensed: where directions without mass were condensed; `directions` counts the original dofs.
     """
 
     mass: sparse.csr_array
@@ -35,6 +37,7 @@ class PointStructure:
     directions: dict
     contact: ContactPoints
     contact_points: list
+    condensed: Condensed | None = field(default=None, kw_only=True)
 
     @property
     def dofs(self) -> int:
@@ -52,7 +55,10 @@ class PointStructure:
             )
         rows = np.zeros((3, self.dofs))
         for axis, dof in self.directions[name].items():
-            rows[AXES[axis], dof] = 1.0
+            if self.condensed is None:
+                rows[AXES[axis], dof] = 1.0
+            else:
+                rows[AXES[axis]] = self.condensed.recovery[dof]
         return rows
 
     def contact_rows(self) -> np.ndarray:
@@ -75,10 +81,13 @@ class PointStructure:
 
         The base accelerates along x, y, z.
         """
-        rigid = np.zeros((self.dofs, 3))
+        whole = self.dofs if self.condensed is None else len(self.condensed.kept)
+        rigid = np.zeros((whole, 3))
         for axes in self.directions.values():
             for axis, dof in axes.items():
                 rigid[dof, AXES[axis]] = 1.0
+        if self.condensed is not None:
+            rigid = self.condensed.kept.T @ rigid
         return (self.mass @ rigid).T
 
 
@@ -158,11 +167,12 @@ def _chain(chain: ConfigPart) -> dict[str, Any]:
 
 def _matrices(structure: ConfigPart) -> dict[str, Any]:
     """Return the fields of a PointStructure whose matrices are in files."""
-    mass = read_matrix(structure.mass, "mass")
-    stiffness = read_matrix(structure.stiffness, "stiffness")
+    chosen = structure.op4_set
+    mass = read_matrix(structure.mass, "mass", chosen)
+    stiffness = read_matrix(structure.stiffness, "stiffness", chosen)
     damping = sparse.csr_array(mass.shape)
     if structure.damping:
-        damping = read_matrix(structure.damping, "damping")
+        damping = read_matrix(structure.damping, "damping", chosen)
     for path, matrix in ((structure.stiffness, stiffness), (structure.damping, damping)):
         if matrix.shape != mass.shape:
             raise MatrixFileError(
@@ -177,7 +187,12 @@ def _matrices(structure: ConfigPart) -> dict[str, Any]:
                     f"structure.points.{name}.{axis} = {dof}: {structure.mass} has {mass.shape[0]}"
                     " dofs, counted from 0"
                 )
+    named = sorted({dof for axes in directions.values() for dof in axes.values()})
+    condensed = condense_massless(mass, stiffness, named)
+    if condensed is not None:
+        mass, stiffness, damping = condensed.mass, condensed.stiffness, condensed.of(damping)
     return {
+        "condensed": condensed,
         "mass": mass,
         "stiffness": stiffness,
         "damping": damping,

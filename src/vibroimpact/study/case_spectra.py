@@ -36,7 +36,8 @@ PARTS = {"re": "real part", "im": "imaginary part"}
 class CaseSpectra:
     """Averages the spectra of one case from pieces of its record.
 
-    config: its sections record, spectra, excitation and identification are read.
+    config: its sections record, spectra, excitation and identification are read. Without
+        identification, segment spectra are kept at all frequencies.
     sensors (sensor,): names, such as "apex.y".
     line_points: number of points on the shape line.
     samples: number of samples of the whole record.
@@ -57,17 +58,20 @@ class CaseSpectra:
         self._length, self._step, self._count = segment_layout(
             samples, rate, spectra.segment_s, spectra.overlap
         )
-        lowest, highest = config.identification.lscf.band_Hz
+        identified = config.identification is not None
+        lowest, highest = config.identification.lscf.band_Hz if identified else (0.0, 0.5 * rate)
         self._transforms = [
             SegmentTransform(rate, spectra, dtype),
             SegmentTransform(rate, spectra, dtype, highest),
         ]
         frequency, line_frequency = (transform.frequency for transform in self._transforms)
-        driven = driven_axes(config.excitation.direction)
+        force = config.excitation
+        driven = driven_axes(force.direction) if hasattr(force, "direction") else tuple("xyz")
         self._driven = [
             index for index, name in enumerate(sensors) if name.rsplit(".", 1)[-1] in driven
         ]
-        self._low = int(np.sum(frequency <= highest_kept_frequency_Hz(config)))
+        kept = highest_kept_frequency_Hz(config) if identified else highest
+        self._low = int(np.sum(frequency <= kept))
         self._band = line_frequency >= lowest
         self._buffer = np.empty((2 * len(sensors) + line_points, self._length), dtype)
         self._sensors = len(sensors)

@@ -62,4 +62,6 @@ def check_model(config: Config) -> ModelChecks:
         require_accurate(accuracy)
     except (IntegrationError, ModelAccuracyError) as error:
         return ModelChecks((*problems, str(error)))
-    return ModelChecks(tuple(problems), tuple(mesh_warnings(accuracy)))
+    condensed = getattr(structure, "condensed", None)
+    told = [] if condensed is None else [f"structure.mass: {condensed.told()}"]
+    return ModelChecks(tuple(problems), (*told, *mesh_warnings(accuracy)))

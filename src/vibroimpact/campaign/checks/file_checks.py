@@ -1,7 +1,8 @@
 """All checks of a campaign file: rows {check, level, record, channel, message}.
 
-level is "pass"; "warn", where a signal or record is left out or to be read with care; or "refuse",
-where no verdict is possible. record and channel are names, None where a row is about all of them.
+level is "pass"; "warn", where a signal or record is left out or to be read with care; "refuse",
+where no verdict is possible; or "not checked", with the reason. record and channel are names, None
+where a row is about all of them.
 A file is refused only where what remains holds no measured force, no response, or no two levels.
 """
 
@@ -22,10 +23,11 @@ from vibroimpact.campaign.file import (
     opened_campaign,
 )
 from vibroimpact.campaign.signals import (
+    SEGMENT_S,
+    blows,
     campaign_signals,
     common_period,
-    transfer,
-    transfer_band,
+    transfer_or_reason,
 )
 from vibroimpact.records import RecordError
 
@@ -37,7 +39,13 @@ from .linear_record import (
     reversed_hint,
     swap_hints,
 )
-from .signal_faults import clipped_share, drop_out, is_drifting, level_trend, missing_samples
+from .signal_faults import (
+    clipped_share,
+    drop_out,
+    is_drifting,
+    level_trend,
+    missing_samples,
+)
 from .stated import (
     assumed_rows,
     check_row,
@@ -67,6 +75,7 @@ CHECKS = (
     "record length",
     "content",
 )
+NOT_CHECKED = "not checked"
 BESIDE = {"base motion": "load_rms"}  # a check of some campaigns alone, and where it stands
 # A warning of these excludes its signal from every comparison.
 EXCLUDING_CHECKS = ("units", "gaps in time", "clipping", "drop-outs", "record length")
@@ -75,17 +84,17 @@ BANDS_PER_DECADE = 24 / np.log10(200.0 / 5.0)
 FEWEST_PERIODS, GOOD_AVERAGES = 10.0, 6.0
 
 
-def check_file(path: str | Path) -> tuple[xr.Dataset | None, list[dict]]:
+def check_file(path: str | Path, unmade: bool = False) -> tuple[xr.Dataset | None, list[dict]]:
     """Return (campaign Dataset or None, rows of all checks) of a campaign file of any state.
 
-    A file that can not be read gives a single row, which refuses it.
+    A file that can not be read gives a single row, which refuses it. unmade: see check_campaign.
     """
     try:
         campaign = opened_campaign(path)
     except RecordError as error:
         reason = str(error).removeprefix(f"{path}: ")
         return None, [check_row("contract", "refuse", f"The file {reason}.")]
-    rows = check_campaign(campaign)
+    rows = check_campaign(campaign, unmade)
     if any(row["check"] == "contract" and row["level"] == "refuse" for row in rows):
         return None, rows
     try:
@@ -94,11 +103,12 @@ def check_file(path: str | Path) -> tuple[xr.Dataset | None, list[dict]]:
         return None, rows
 
 
-def check_campaign(campaign: xr.Dataset) -> list[dict]:
+def check_campaign(campaign: xr.Dataset, unmade: bool = False) -> list[dict]:
     """Return the rows of all checks of a campaign Dataset, in the order of CHECKS.
 
-    A check without complaint gives one row of level "pass". Faults of single signals are looked
-    for in what was recorded; all that follows looks at the motion relative to the base.
+    A check without complaint gives one row of level "pass". One that could not be made gives a row
+    "not checked" with the reason where `unmade` asks for those, else none. Faults of single signals
+    are looked for in what was recorded; all that follows looks at the motion relative to the base.
     """
     campaign = decode_texts(campaign)
     problems = [*contract_problems(campaign)]
@@ -126,14 +136,18 @@ def check_campaign(campaign: xr.Dataset) -> list[dict]:
         *load_rows(campaign, measured),
         *_linear(measured, spectra, record),
         *_directions(measured),
-        *_stationarity(measured, usable),
-        *_length(measured),
+        *_stationarity(measured, usable, spectra),
+        *_length(measured, spectra),
         *_content(measured, usable),
     ]
+    if "time" not in campaign:
+        rows.append(_not_checked("time", "the file has no variable time"))
     complained = {row["check"] for row in rows}
     rows += [
         check_row(check, "pass", said) for check, said in PASSED.items() if check not in complained
     ]
+    if not unmade:
+        rows = [row for row in rows if row["level"] != NOT_CHECKED]
     return sorted(rows, key=lambda row: CHECKS.index(BESIDE.get(row["check"], row["check"])))
 
 
@@ -151,9 +165,14 @@ PASSED = {
     "swapped channels": "Nothing hints at swapped or reversed channels.",
     "directions": "Every channel has a place and a unit direction.",
     "stationarity": "No band level drifts within a record.",
-    "record length": "Every record is long enough for the lowest excited band.",
+    "record length": "Every record is long enough for the lowest band that is looked at.",
     "content": "There are a force, a response and two levels or more.",
 }
+
+
+def _not_checked(check: str, reason: str) -> dict:
+    """Return the row of a check that could not be made."""
+    return check_row(check, NOT_CHECKED, f"Not checked: {reason}.")
 
 
 def refused(rows: list[dict]) -> bool:
@@ -174,7 +193,8 @@ def usable_signals(campaign: xr.Dataset, rows: list[dict]) -> tuple[np.ndarray, 
     force = np.ones(len(names["record_name"]), bool)
     response = np.ones((force.size, len(names["channel_name"])), bool)
     for row in rows:
-        if row["check"] not in EXCLUDING_CHECKS or row["level"] == "pass" or row["channel"] is None:
+        excluding = row["check"] in EXCLUDING_CHECKS and row["level"] in ("warn", "refuse")
+        if not excluding or row["channel"] is None:
             continue
         which = slice(None) if row["record"] is None else names["record_name"].index(row["record"])
         if row["channel"] in names["channel_name"]:  # no name stands twice in a file
@@ -236,7 +256,8 @@ def _faults_of(signal, period, measured, record, channel, what):
             record,
             channel,
         )
-    lost = None if presses else drop_out(signal, measured.rate, measured.starts_at_rest)
+    still = presses or (channel in measured.forces and blows(signal) > 0)
+    lost = None if still else drop_out(signal, measured.rate, measured.starts_at_rest)
     if lost is not None:
         yield check_row(
             "drop-outs",
@@ -249,18 +270,18 @@ def _faults_of(signal, period, measured, record, channel, what):
 
 
 def _lowest_spectra(measured):
+    """Return (Transfer or the reason why there is none, record of the lowest load or None)."""
     record = measured.lowest()
-    return (None, None) if record is None else (transfer(measured, record), record)
+    if record is None:
+        return "no record has a force and a response without holes", None
+    return transfer_or_reason(measured, record), record
 
 
 def _linear(measured, spectra, record):
     """Yield rows of the lowest level: coherence, delays, hints of swapped or reversed channels."""
-    if spectra is None:
-        yield check_row(
-            "coherence",
-            "warn",
-            "No record has a force and a response without holes that are long enough to average.",
-        )
+    if isinstance(spectra, str):
+        for check in ("coherence", "delay", "swapped channels"):
+            yield _not_checked(check, spectra)
         return
     name = measured.records[record]
     coherence = mean_coherence(spectra)
@@ -274,6 +295,8 @@ def _linear(measured, spectra, record):
             " at most): it is not the force that drove them, or clocks differ.",
             name,
         )
+        for check in ("delay", "swapped channels"):
+            yield _not_checked(check, f"no response follows {measured.forces[0]}")
         return
     if best < 0.8:
         yield check_row(
@@ -305,7 +328,12 @@ def _linear(measured, spectra, record):
             name,
             measured.forces[0],
         )
-    if len(measured.forces) == 1:  # of several, each may drive what does not follow the first
+    if len(measured.forces) > 1:
+        reason = "with several forces, each may drive what does not follow the first"
+        yield _not_checked("swapped channels", reason)
+    elif len(measured.channels) == 1:
+        yield _not_checked("swapped channels", "there is one response")
+    else:
         yield from _mix_ups(measured, spectra, name)
 
 
@@ -361,10 +389,11 @@ def _directions(measured):
         )
 
 
-def _stationarity(measured, usable):
-    band = transfer_band(measured)
-    if band is None:
+def _stationarity(measured, usable, spectra):
+    if isinstance(spectra, str):
+        yield _not_checked("stationarity", spectra)
         return
+    band, made = (spectra.frequency[0], spectra.frequency[-1]), False
     for record, name in enumerate(measured.records):
         if not usable[0][record]:
             continue
@@ -377,6 +406,7 @@ def _stationarity(measured, usable):
             trend = (
                 level_trend(signal, measured.rate, band, measured.starts_at_rest) if kept else None
             )
+            made = made or trend is not None
             if is_drifting(trend):
                 yield check_row(
                     "stationarity",
@@ -387,31 +417,40 @@ def _stationarity(measured, usable):
                     channel,
                 )
 
+    if not made:
+        yield _not_checked("stationarity", "no record is long enough for a trend of its level")
 
-def _length(measured):
-    band, too_short = transfer_band(measured), 0
-    if band is None:
+
+def _length(measured, spectra):
+    if isinstance(spectra, str):
+        yield _not_checked("record length", spectra)
         return
-    width = band[0] * (10.0 ** (1.0 / BANDS_PER_DECADE) - 1.0)
-    for record, name in enumerate(measured.records):
-        duration = measured.force[record].shape[-1] / measured.rate
-        if duration * band[0] < FEWEST_PERIODS:
-            too_short += 1
-        if duration * width < GOOD_AVERAGES:
+    low, high = float(spectra.frequency[0]), float(spectra.frequency[-1])
+    durations = measured.valid_samples / measured.rate
+    step = float(np.diff(spectra.frequency).min())
+    # the lowest line falls with the length of the record where the force excites all of them
+    falls = measured.stated_band is None and low < 2.5 * step
+    lowest = 1.0 / SEGMENT_S if falls else low
+    for name, duration in zip(measured.records, durations, strict=True):
+        # from here on, a band of the comparison holds GOOD_AVERAGES independent averages
+        sure = GOOD_AVERAGES / (duration * (10.0 ** (1.0 / BANDS_PER_DECADE) - 1.0))
+        if sure > low:
+            stated = f"[{np.ceil(100.0 * sure) / 100.0:g}, {np.floor(10.0 * high) / 10.0:g}]"
             yield check_row(
                 "record length",
                 "warn",
-                f"Record {name} of {duration:.3g} s holds {duration * width:.1f} independent"
-                f" averages in a band of {width:.2g} Hz at {band[0]:.3g} Hz: its lowest bands are"
-                f" uncertain; {GOOD_AVERAGES / width:.0f} s would do.",
+                f"Record {name} of {duration:.3g} s is sure from {sure:.3g} Hz up. The force"
+                f" excites {low:.3g} Hz and above: state band_Hz: {stated} in campaign.yaml, or"
+                f" record {np.ceil(duration * sure / lowest):.0f} s.",
                 name,
             )
-    if too_short == len(measured.records):
+    if durations.max() * spectra.responding < FEWEST_PERIODS:
         yield check_row(
             "record length",
             "refuse",
-            f"Every record is shorter than {FEWEST_PERIODS:.0f} periods of the lowest excited"
-            f" frequency, {band[0]:.3g} Hz.",
+            f"Every record is shorter than {FEWEST_PERIODS:.0f} periods of the lowest frequency of"
+            f" the response, {spectra.responding:.3g} Hz: {FEWEST_PERIODS / spectra.responding:.3g}"
+            " s would do.",
         )
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from vibroimpact.campaign.file import SAME_POINT_M
 from vibroimpact.campaign.signals import CampaignSignals, Transfer
+from vibroimpact.identify.lscf import NormalEquations
 from vibroimpact.units import TIME_DERIVATIVES
 
 ALIGNED, ACROSS = 0.7, 0.3  # |cosine| with the force
@@ -24,6 +25,8 @@ REAL_ENOUGH = 0.6
 SEEN_RAD, SEEN_SAMPLES = 0.15, 0.3  # least reported delay: its phase at the highest line; samples
 OUTSHINES = 10.0  # power of a channel across the force over one along it that makes a swap likely
 SAME_SIGN = 0.7
+WELL_FITTED = 0.5  # relative error of real modes that say something of a delay
+LAG_ORDER = 12  # of the estimator of poles that a delay is held against
 
 
 def mean_coherence(spectra: Transfer) -> np.ndarray:
@@ -47,8 +50,8 @@ def channel_delays(
     The lags of the channels are relative to the others; the common lag is that of all channels
     behind the force. The lag tau of a channel maximises sum coherence * Re((h/|h|)² exp(2i omega
     tau)), which is 1 for real modes without noise; a velocity is first turned by a quarter period.
-    A lag is reported where it explains half of what is missing to 1, and where its phase is large
-    enough to be seen.
+    A lag is reported where it explains half of what is missing to 1, where its phase is large
+    enough to be seen, and where real modes fit no better without it.
     """
     unit = spectra.h1 / np.maximum(np.abs(spectra.h1), np.finfo(float).tiny)
     squared = unit**2 * np.where(np.array(kinds) == "velocity", -1.0, 1.0)[:, None]
@@ -66,6 +69,8 @@ def channel_delays(
         return {}, None
     found = lags[np.argmax(score, axis=-1)]
     smallest = max(SEEN_SAMPLES, SEEN_RAD * rate / (2.0 * np.pi * spectra.frequency[-1]))
+    suspect = [int(index) for index in trusted if abs(found[index]) > smallest]
+    found[_not_delayed(spectra, kinds, suspect, found / rate)] = 0.0
     common = float(np.median(found[trusted]))
     here, zero = (int(np.argmin(np.abs(lags - lag))) for lag in (common, 0.0))
     apart = {
@@ -77,6 +82,43 @@ def channel_delays(
     return apart, (
         common if abs(common) > smallest and _explains(together[zero], together[here]) else None
     )
+
+
+def _not_delayed(
+    spectra: Transfer, kinds: Sequence[str], channels: list[int], lags: np.ndarray
+) -> list[int]:
+    """Return those of the channels that real modes fit better without the lag (channel,) in s.
+
+    Damping that couples two modes turns the phase of a small response in proportion to frequency
+    too. The poles are those of the estimator LSCF of all channels, the residues real, beside a
+    constant flexibility and inertia; errors are relative, line by line.
+    """
+    order = min(LAG_ORDER, spectra.frequency.size // 4)
+    if not channels or order < 2:
+        return []
+    size = np.sqrt(np.mean(np.abs(spectra.h1) ** 2, axis=1, keepdims=True))
+    scaled = spectra.h1 / np.maximum(size, np.finfo(float).tiny)
+    poles = NormalEquations(spectra.frequency, scaled[:, None, :], order).poles(order)[0]
+    poles = poles[poles.real < 0.0][:, None]
+    s = 2j * np.pi * spectra.frequency
+    modes = 1.0 / (s**2 - 2.0 * poles.real * s + np.abs(poles) ** 2)
+
+    def error(channel: int, lag: float) -> float:
+        derived = s ** TIME_DERIVATIVES.get(kinds[channel], 0)
+        response = spectra.h1[channel] * np.exp(s * lag)
+        weight = np.sqrt(spectra.coherence[channel]) / np.maximum(np.abs(response), 1e-300)
+        lines = np.vstack([modes, np.ones_like(s), s**-2.0]) * derived * weight
+        columns = np.hstack([lines.real, lines.imag]).T
+        columns /= np.linalg.norm(columns, axis=0)
+        target = np.hstack([(response * weight).real, (response * weight).imag])
+        left = target - columns @ np.linalg.lstsq(columns, target)[0]
+        return float(np.linalg.norm(left) / np.linalg.norm(target))
+
+    return [
+        each
+        for each in channels
+        if error(each, 0.0) < min(WELL_FITTED, error(each, float(lags[each])))
+    ]
 
 
 def _explains(without: float, with_it: float) -> bool:

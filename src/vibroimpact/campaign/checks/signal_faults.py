@@ -152,7 +152,8 @@ def level_trend(
 
     signal (time,).
     rate: Hz.
-    band_Hz: lowest and highest frequency.
+    band_Hz: lowest and highest frequency; the lowest is raised where a segment of four of its
+    periods is too long for the record.
     starts_at_rest: the start-up is left out.
 
     The level is the mean in dB over 6 bands within band_Hz, in segments of 2 s. A straight line is
@@ -161,9 +162,10 @@ def level_trend(
     """
     begin = int(min(START_UP_SHARE * signal.size, START_UP_S * rate)) if starts_at_rest else 0
     kept = signal[begin:]
-    size = int(max(TREND_SEGMENT_S, 4.0 / band_Hz[0]) * rate)
+    low_Hz = max(band_Hz[0], 4.0 * 0.5 * (TREND_SEGMENTS + 1) * rate / max(kept.size, 1))
+    size = int(max(TREND_SEGMENT_S, 4.0 / low_Hz) * rate)
     count = (2 * kept.size) // size - 1
-    if count < TREND_SEGMENTS:
+    if count < TREND_SEGMENTS or low_Hz >= band_Hz[1]:
         return None
     window, step = np.hanning(size), size // 2
     power = np.array(
@@ -172,7 +174,8 @@ def level_trend(
             for index in range(count)
         ]
     )
-    frequency, edges = np.fft.rfftfreq(size, 1.0 / rate), np.geomspace(*band_Hz, TREND_BANDS + 1)
+    frequency = np.fft.rfftfreq(size, 1.0 / rate)
+    edges = np.geomspace(low_Hz, band_Hz[1], TREND_BANDS + 1)
     inside = [
         (frequency >= low) & (frequency <= high)
         for low, high in zip(edges[:-1], edges[1:], strict=True)

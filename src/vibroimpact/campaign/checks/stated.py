@@ -10,10 +10,13 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
-from vibroimpact.campaign.signals import FEWEST_SAMPLES, CampaignSignals, is_load, rms_of_force
+from vibroimpact.campaign.file import load_of
+from vibroimpact.campaign.force_kinds import BASE
+from vibroimpact.campaign.signals import FEWEST_SAMPLES, CampaignSignals, is_load
 
 WIDE_GAP_M, FAR_M = 0.05, 100.0  # larger ones may be in millimetres
 FILTERS = ("fir80", "none")  # what simulations pass, and no filter
+OFFSET = 0.2  # of the RMS about the mean: a larger constant part of a force is told
 NO_PERIOD = 0.5  # of the force: a larger difference between two periods is that of another force
 Rows = Iterator[dict]
 
@@ -118,10 +121,11 @@ def time_rows(campaign: xr.Dataset, measured: CampaignSignals) -> Rows:
 
 
 def load_rows(campaign: xr.Dataset, measured: CampaignSignals) -> Rows:
-    """Yield rows of loads that are not the RMS of the force."""
+    """Yield rows of loads that are not those of the force, and of forces with an offset."""
     stated = campaign["load_rms"].values.astype(float)
     for record, name in enumerate(measured.records):
-        found = rms_of_force(measured.force[record])
+        found = load_of(measured.force[record][0], measured.rate, measured.stated_band)
+        yield from _offset_rows(measured, record)
         if not is_load(stated[record], found):
             yield check_row(
                 "load_rms",
@@ -131,6 +135,27 @@ def load_rows(campaign: xr.Dataset, measured: CampaignSignals) -> Rows:
                 " wrong; the force itself is used.",
                 name,
                 measured.forces[0],
+            )
+
+
+def _offset_rows(measured: CampaignSignals, record: int) -> Rows:
+    """Yield a row for each force of a record that reads a constant part: its median, which the
+    blows of a hammer do not move.
+    """
+    name = measured.records[record]
+    for index, force in enumerate(measured.force[record]):
+        kept = force[np.isfinite(force)]
+        offset, rms = (float(np.median(kept)), float(kept.std())) if kept.size else (0.0, 0.0)
+        if abs(offset) > OFFSET * rms > 0.0:
+            unit = "m/s²" if measured.force_kinds[index] == BASE else "N"
+            yield check_row(
+                "load_rms",
+                "warn",
+                f"{measured.forces[index]} reads a constant {offset:.4g} {unit} in record {name},"
+                f" beside an RMS of {rms:.4g} {unit} about it: loads are taken about the mean."
+                " Where it reads that at rest too, add remove_offset: true to it in campaign.yaml.",
+                name,
+                measured.forces[index],
             )
 
 

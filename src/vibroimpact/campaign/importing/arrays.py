@@ -64,11 +64,12 @@ def signals_of_arrays(arrays: Arrays) -> list[Signal]:
     for name, rows in signals.items():
         if rows.shape[-1] != longest:
             continue
-        rate, notes = stated, [arrays.note]
+        rate, notes, start = stated, [arrays.note], None
         if time is not None and time.size == longest:
             rows, rate, how = even_samples(time, rows, f"{arrays.path}, {name}")
             _require_same(arrays.path, stated, rate, stamps)
             notes.append(how)
+            start = float(time[0])
         for index, row in enumerate(rows):
             found.append(
                 Signal(
@@ -79,6 +80,7 @@ def signals_of_arrays(arrays: Arrays) -> list[Signal]:
                     arrays.units.get(name, ""),
                     arrays.unit_from if name in arrays.units else "",
                     note="; ".join(filter(None, notes)),
+                    start=start,
                     lines=arrays.lines,
                 )
             )

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from vibroimpact.campaign.file import Level, campaign_dataset, contract_problems
+from vibroimpact.campaign.file import Level, campaign_dataset, contract_problems, load_of
 from vibroimpact.units import si_factor, si_unit
 
 from .cuts import Cut, cut_records
 from .raw_files import raw_files, read_signals
 from .sensors import Measured, ResolvedSensor, one_rate, read_voltage, resolve_sensors
-from .sidecar import NAME, Drive, Record, Sensor, Sidecar, draft_sidecar, read_sidecar
+from .sidecar import NAME, Drive, Record, Sensor, Sidecar, read_sidecar
 from .signals import ImportProblem
 
 
@@ -35,7 +35,7 @@ def import_folder(folder: str | Path) -> tuple[xr.Dataset, list[dict]]:
     voltage = read_voltage(measured)
     if measured.problems:
         raise ImportProblem("\n".join(dict.fromkeys(measured.problems)))
-    cuts = cut_records(sensors, rate, measured)
+    cuts = cut_records(sensors, voltage, rate, measured)
     campaign = _campaign(sidecar, sensors, cuts, rate, voltage)
     breaches = [f"{folder / NAME}: the campaign {line}" for line in contract_problems(campaign)]
     if breaches:
@@ -46,17 +46,16 @@ def import_folder(folder: str | Path) -> tuple[xr.Dataset, list[dict]]:
 def _sidecar_from_files(folder, found):
     """Return the Sidecar that universal files define by themselves: one record per file.
 
-    Raises ImportProblem, with a draft of campaign.yaml, for other files.
+    Raises ImportProblem for other files.
     """
-    signals = [signal for group in found.values() for signal in group]
     first = next(iter(found.values()))
     forces = [Drive(name=signal.name) for signal in first if signal.force]
     responses = [Sensor(name=signal.name) for signal in first if not signal.force]
     if not forces or not responses:
         missing = "force (ordinate type 13)" if not forces else "response"
         raise ImportProblem(
-            f"{folder}: there is no {NAME} and the files do not say which signal is the {missing}:"
-            f" put a {NAME} into the folder, such as\n\n{draft_sidecar(folder, signals)}"
+            f"{folder}: there is no {NAME}, and the files do not say which signal is the {missing}:"
+            f" put a {NAME} into the folder"
         )
     return Sidecar(
         source=folder.name if folder.name.isprintable() else "",
@@ -100,7 +99,8 @@ def _campaign(sidecar, sensors, cuts, rate, voltage):
     channels, drives = (
         [sensor.channel for sensor in groups[role]] for role in ("response", "force")
     )
-    loads = np.sqrt(np.nanmean(np.square(stacked["force"][:, 0]), axis=-1))
+    stated = {} if sidecar.band_Hz is None else {"band_Hz": sidecar.band_Hz}
+    loads = [load_of(force[0], rate, sidecar.band_Hz) for force in stacked["force"]]
     return campaign_dataset(
         stacked["force"],
         stacked["response"],
@@ -114,6 +114,7 @@ def _campaign(sidecar, sensors, cuts, rate, voltage):
         start_up=sidecar.start_up,
         period_samples=sidecar.period_samples,
         transient_periods=sidecar.transient_periods,
+        **stated,
     )
 
 
@@ -170,6 +171,9 @@ def _losses(signal, cut, finite):
     """Yield what of a signal is missing in a record, or was left out of it."""
     if finite < cut.length:
         yield f"{cut.length - finite} of {cut.length} samples are missing (nan)"
-    longer = signal.values.size - cut.first - cut.length
+    late = cut.late(signal)
+    if late:
+        yield f"its first {late} samples are left out: another signal of the record begins later"
+    longer = signal.values.size - late - cut.first - cut.length
     if longer > 0 and not cut.stated:
         yield f"its last {longer} samples are left out: another signal of the record ends there"

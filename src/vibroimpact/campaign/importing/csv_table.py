@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from .arrays import Arrays, signals_of_arrays
-from .signals import ImportProblem, Signal
+from .signals import UNREAD, ImportProblem, Signal
 from .text_file import read_encoded
 
 HEADER_UNIT = re.compile(r"\s*(.*?)\s*[\[(]\s*([^\])]+?)\s*[\])]\s*")  # acc top [m/s^2]
@@ -17,33 +17,42 @@ NUMBER = re.compile(
     r"\s*[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?|inf|infinity|nan)\s*", re.ASCII | re.IGNORECASE
 )
 SHOWN = 5  # cells that are no numbers; more are counted
+COMMENT = "#%"
+LABVIEW = "LabVIEW Measurement"
 
 
 def read_csv(path: str | Path) -> list[Signal]:
     """Return the Signals of a CSV file.
 
-    It has one header line with names, "name" or "name [unit]"; a column "time" gives the sampling.
-    The separator is a comma, semicolon or tab. Raises ImportProblem for two columns of one name and
-    where a cell is no number.
+    One line of names stands above the table, "name" or "name [unit]", as a comment or not; a column
+    "time" gives the sampling. The separator is a comma, semicolon, tab or blanks; with a semicolon
+    or tab, decimal commas are read. Raises ImportProblem for a table without names, two columns of
+    one name and where a cell is no number.
     """
     text, note = read_encoded(path)
-    lines = [
-        (number, line.rstrip("\n"))
-        for number, line in enumerate(io.StringIO(text, newline=None), start=1)
-        if line.strip() and not line.startswith("#")
-    ]
-    if len(lines) < 3:
+    if text.startswith(LABVIEW):
+        raise ImportProblem(f"{path}: {UNREAD['.lvm']}")
+    rows = enumerate(io.StringIO(text, newline=None), start=1)
+    numbered = [(number, line.rstrip("\n")) for number, line in rows if line.strip()]
+    lines = [(number, line) for number, line in numbered if line[0] not in COMMENT]
+    if len(lines) < 2:
         raise ImportProblem(
             f"{path}: holds no table: a header line with names, then one line per sample"
         )
-    header = lines.pop(0)[1]
-    separator = max(",;\t", key=header.count)
-    names, units = _columns(path, header.split(separator))
-    table = _numbers(path, lines, names, separator)
+    separator = next((mark for mark in "\t;," if mark in lines[1][1]), None)
+    header = _header(path, numbered, lines, separator)
+    if len(lines) < 2:
+        raise ImportProblem(f"{path}: holds one sample: a record takes two at least")
+    names, units = _columns(path, header)
+    if separator in ("\t", ";") and not any("." in line for _, line in lines):
+        lines = [(number, line.replace(",", ".")) for number, line in lines]
+    empty = _empty_columns(names, lines, separator)
+    table = _numbers(path, lines, (names, empty), separator)
+    kept = [name for index, name in enumerate(names) if index not in empty]
     return signals_of_arrays(
         Arrays(
             path,
-            {name: table[:, index] for index, name in enumerate(names)},
+            {name: table[:, index] for index, name in enumerate(kept)},
             units,
             "header of the file",
             note=note,
@@ -52,12 +61,60 @@ def read_csv(path: str | Path) -> list[Signal]:
     )
 
 
+def _header(path, numbered, lines, separator):
+    """Return the cells of the line of names, which is taken out of lines where it is no comment.
+
+    It is the first line of the table, or the last comment above it where that holds numbers.
+    """
+    number, first = lines[0]
+    cells = first.split(separator)
+    if not all(NUMBER.fullmatch(cell) for cell in cells if cell.strip()):
+        lines.pop(0)
+        return _split(first, len(lines[0][1].split(separator)), separator)
+    above = [line.lstrip(COMMENT) for at, line in numbered if at < number]
+    if not above:
+        raise ImportProblem(
+            f"{path}: line {number} holds numbers, the names of the columns are missing: write a"
+            " line of names above it, such as time [s],force [N],tip [m/s^2]"
+        )
+    names = _split(above[-1], len(cells), separator)
+    if len(names) != len(cells):
+        raise ImportProblem(
+            f"{path}: the comment above line {number} has {len(names)} names for {len(cells)}"
+            " columns: write a line of names, one for each"
+        )
+    return names
+
+
+def _split(line, columns, separator):
+    """Return the cells of a line of names: by the separator that gives as many as there are
+    columns, else by that of the table.
+    """
+    for mark in (*([separator] if separator else []), *",;\t", None):
+        cells = line.split(mark)
+        if len(cells) == columns and len([cell for cell in cells if cell.strip()]) == columns:
+            return cells
+    return line.split(separator)
+
+
+def _empty_columns(names, lines, separator):
+    """Return the numbers of the columns without a name and without a value, as a separator at the
+    begin or the end of each line makes them.
+    """
+    return {
+        index
+        for index, name in enumerate(names)
+        if not name
+        and not any(line.split(separator)[index : index + 1] not in ([""], []) for _, line in lines)
+    }
+
+
 def _columns(path, cells):
     """Return (names, {name: unit}) of the columns. Raises ImportProblem for equal names."""
-    cells = [cell.strip().strip('"') for cell in cells]
+    cells = [cell.strip(' \t",;') for cell in cells]
     parts = [HEADER_UNIT.fullmatch(cell) for cell in cells]
     names = [part[1] if part else cell for part, cell in zip(parts, cells, strict=True)]
-    twice = [name for name in dict.fromkeys(names) if names.count(name) > 1]
+    twice = [name for name in dict.fromkeys(filter(None, names)) if names.count(name) > 1]
     if twice:
         raise ImportProblem(
             f"{path}: {names.count(twice[0])} columns are called '{twice[0]}': give each column a"
@@ -66,22 +123,33 @@ def _columns(path, cells):
     return names, {name: part[2] for name, part in zip(names, parts, strict=True) if part}
 
 
-def _numbers(path, lines, names, separator):
-    """Return (sample, column) the numbers of numbered lines. Raises ImportProblem."""
+def _numbers(path, lines, columns, separator):
+    """Return (sample, column) the numbers of numbered lines, without the empty columns.
+
+    columns: (names, numbers of the empty ones). Raises ImportProblem.
+    """
+    names, empty = columns
+    wanted = [index for index in range(len(names)) if index not in empty]
+    if any(len(line.split(separator)) != len(names) for _, line in lines):
+        raise ImportProblem("\n".join(_faults(path, lines, columns, separator)))
     try:
-        table = np.loadtxt([line for _, line in lines], delimiter=separator, comments=None, ndmin=2)
+        return np.loadtxt(
+            [line for _, line in lines],
+            delimiter=separator,
+            comments=None,
+            ndmin=2,
+            usecols=wanted,
+        )
     except ValueError as error:
         raise ImportProblem(
-            "\n".join(_faults(path, lines, names, separator)) or f"{path}: no table ({error})"
+            "\n".join(_faults(path, lines, columns, separator)) or f"{path}: no table ({error})"
         ) from error
-    if table.shape[1] != len(names):
-        raise ImportProblem("\n".join(_faults(path, lines, names, separator)))
-    return table
 
 
-def _faults(path, lines, names, separator):
+def _faults(path, lines, columns, separator):
     """Return a sentence for each of the first cells that are no numbers and lines too long."""
     faults = []
+    names, empty = columns
     for number, line in lines:
         cells = line.split(separator)
         if len(cells) != len(names):
@@ -93,8 +161,8 @@ def _faults(path, lines, names, separator):
         faults += [
             f"{path}: line {number}, column {name}: '{cell.strip()[:40]}' is no number with a point"
             " as decimal sign: correct it, or write nan for a sample that is missing"
-            for name, cell in zip(names, cells, strict=True)
-            if not NUMBER.fullmatch(cell)
+            for index, (name, cell) in enumerate(zip(names, cells, strict=True))
+            if index not in empty and not NUMBER.fullmatch(cell)
         ]
     more = len(faults) - SHOWN
     return faults[:SHOWN] + ([f"{path}: {more} more of this kind"] if more > 0 else [])

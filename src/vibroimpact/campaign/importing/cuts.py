@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from vibroimpact.units import si_factor
 
 from .sensors import Measured, ResolvedSensor
 from .sidecar import NAME, Record, record_names
-from .signals import ImportProblem, Signal
+from .signals import EVEN_WITHIN, ImportProblem, Signal
 
 # A measured value in SI units, and one as float32 can store it.
 MOST_SI, MOST_STORED, LEAST_STORED = 1e12, 1e30, 1e-30
@@ -21,39 +22,60 @@ MOST_SI, MOST_STORED, LEAST_STORED = 1e12, 1e30, 1e-30
 class Cut:
     """A record: its name and the samples that it takes of each of its signals.
 
-    first, length: samples, from 0.
-    stated: whether to_s of the sidecar gives its end, not the shortest signal.
+    start: s, when the last of its signals begins; None where no file has a time.
+    rate: Hz.
+    first, length: samples, from `start`.
+    stated: whether to_s of the sidecar gives its end, not the signal that ends first.
     """
 
     name: str
+    start: float | None
+    rate: float
     first: int
     length: int
     stated: bool
 
+    def late(self, signal: Signal) -> int:
+        """Return how many samples of a signal are before the start of the record."""
+        if self.start is None or signal.start is None:
+            return 0
+        return round((self.start - signal.start) * self.rate)
+
     def of(self, signal: Signal) -> np.ndarray:
         """Return (time,) the values of a signal in this record."""
-        return signal.values[self.first : self.first + self.length]
+        first = self.first + self.late(signal)
+        return signal.values[first : first + self.length]
 
 
-def cut_records(sensors: list[ResolvedSensor], rate: float, measured: Measured) -> list[Cut]:
-    """Return the Cut of each record; it ends with the shortest of its signals.
+def cut_records(
+    sensors: list[ResolvedSensor],
+    voltage: list[Signal] | None,
+    rate: float,
+    measured: Measured,
+) -> list[Cut]:
+    """Return the Cut of each record: of the time that all of its signals have.
 
+    voltage: the Signal of the shaker's voltage in each record, or None.
     rate: Hz.
 
-    Raises ImportProblem for a cut that the record does not hold and for values that are no
-    measurement.
+    Raises ImportProblem for signals that begin between two samples of another, for a cut that the
+    record does not hold and for values that are no measurement.
     """
     records = measured.sidecar.records
     cuts: list[Cut] = []
     problems: list[str] = []
     for index, (record, name) in enumerate(zip(records, record_names(records), strict=True)):
-        size = min(sensor.signals[index].values.size for sensor in sensors)
+        group = [sensor.signals[index] for sensor in sensors]
+        group += [voltage[index]] if voltage else []
+        start = max((signal.start for signal in group if signal.start is not None), default=None)
         first = round((record.from_s or 0.0) * rate)
+        cut = Cut(name, start, rate, first, 0, record.to_s is not None)
+        problems += _apart(group, cut)
+        size = max(min(signal.values.size - cut.late(signal) for signal in group), 0)
         last = size if record.to_s is None else round(record.to_s * rate)
         problems += _outside(record, f"records[{index}]", size / rate, rate)
-        length = max(min(last, size) - first, 0)
-        cuts.append(Cut(name, first, length, record.to_s is not None))
-    problems += _short(cuts, measured)
+        cuts.append(replace(cut, length=max(min(last, size) - cut.first, 0)))
+    problems += [] if problems else _short(cuts, measured)
     if not problems:
         problems = [
             problem
@@ -64,6 +86,31 @@ def cut_records(sensors: list[ResolvedSensor], rate: float, measured: Measured) 
     if problems:
         raise ImportProblem("\n".join(f"{measured.folder / NAME}: {line}" for line in problems))
     return cuts
+
+
+def _apart(group: list[Signal], cut: Cut) -> Iterator[str]:
+    """Yield a sentence for a signal that begins between the samples of the last one to begin, or
+    ends before it.
+    """
+    last = max(group, key=lambda signal: -np.inf if signal.start is None else signal.start)
+    for signal in group:
+        if signal.start is None or cut.start is None:
+            continue
+        samples = (cut.start - signal.start) * cut.rate
+        begin = (
+            f"record {cut.name}: {signal.name} of {Path(signal.file).name} begins at"
+            f" {signal.start:.9g} s, {last.name} of {Path(last.file).name} at {cut.start:.9g} s"
+        )
+        if samples >= signal.values.size:
+            yield (
+                f"{begin}, after its end: correct the time of the files, or leave it out and give"
+                " sampling_frequency_Hz"
+            )
+        elif abs(samples - round(samples)) > EVEN_WITHIN:
+            yield (
+                f"{begin}, {samples:.2f} samples apart: export them from one clock, or resample"
+                " them to common times"
+            )
 
 
 def _outside(record: Record, place: str, duration: float, rate: float) -> Iterator[str]:
@@ -96,22 +143,23 @@ def _odd_values(sensor: ResolvedSensor, signal: Signal, cut: Cut) -> Iterator[st
     NaN stands for a sample that is missing: the checks of the campaign say what is left out.
     """
     values, unit = cut.of(signal), sensor.channel.units
+    first = cut.first + cut.late(signal)
     size = np.abs(values)
     wrong = np.flatnonzero(size > min(MOST_STORED, MOST_SI / si_factor(unit, sensor.unit_kind)))
     if wrong.size:
         more = f" and {wrong.size - 1} others" if wrong.size > 1 else ""
         yield (
-            f"{signal.place(cut.first + int(wrong[0]))}: {values[wrong[0]]:g} {unit}{more} in"
+            f"{signal.place(first + int(wrong[0]))}: {values[wrong[0]]:g} {unit}{more} in"
             f" record {cut.name} is no measured value: correct the file or its unit, or write nan"
             " where a sample is missing"
         )
     elif not np.isfinite(size).any() and sensor.role == "force":
         yield (
-            f"{signal.place(cut.first)}: {sensor.channel.name} has no value in record {cut.name}:"
+            f"{signal.place(first)}: {sensor.channel.name} has no value in record {cut.name}:"
             " leave the record out"
         )
     elif 0.0 < np.nanmax(size, initial=0.0) < LEAST_STORED:
         yield (
-            f"{signal.place(cut.first)}: {sensor.channel.name} is below {LEAST_STORED:g} {unit} in"
+            f"{signal.place(first)}: {sensor.channel.name} is below {LEAST_STORED:g} {unit} in"
             f" record {cut.name}: correct its unit"
         )

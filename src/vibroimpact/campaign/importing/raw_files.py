@@ -14,7 +14,7 @@ from .csv_table import read_csv
 from .matlab import read_matlab
 from .netcdf import read_netcdf
 from .sidecar import NAME, read_sidecar
-from .signals import ImportProblem, Signal
+from .signals import UNREAD, ImportProblem, Signal
 from .uff import read_uff
 
 READERS = {
@@ -88,6 +88,13 @@ def _measured(folder: Path, inside: list[Path], wanted: Collection[str] | None) 
         for file in inside
         if file.suffix.lower() in READERS and (wanted is None or file.name in wanted)
     ]
+    unread = [
+        f"{file}: {UNREAD[file.suffix.lower()]}"
+        for file in inside
+        if file.suffix.lower() in UNREAD and (not files if wanted is None else file.name in wanted)
+    ]
+    if unread:
+        raise ImportProblem("\n".join(unread))
     if not files and wanted is not None:
         raise ImportProblem(
             f"{folder / NAME}: none of its files {', '.join(sorted(wanted))} is in the folder (read"

@@ -23,12 +23,12 @@ SHOWN = {
     "rms_SI": "RMS (SI)",
     "peak_SI": "peak (SI)",
 }
-SIGNS = {"pass": "ok    ", "warn": "WARN  ", "refuse": "REFUSE"}
+SIGNS = {"pass": "ok    ", "warn": "WARN  ", "refuse": "REFUSE", "not checked": "-     "}
 
 
 def write_report(folder: str | Path, campaign: xr.Dataset, rows: list[dict], paths: Any) -> None:
     """Check the campaign of a folder and write paths.table, paths.checks (CSV) and paths.text."""
-    checks = check_campaign(campaign)
+    checks = check_campaign(campaign, unmade=True)
     write_table(rows, paths.table)
     write_table(checks, paths.checks, COLUMNS)
     write_text(import_text(folder, campaign, rows, checks), paths.text)
@@ -85,16 +85,19 @@ def _table(rows: list[dict]) -> list[str]:
 
 def checks_text(checks: list[dict]) -> str:
     """Return the rows of check_campaign as lines, refusals first, then warnings."""
-    order = {"refuse": 0, "warn": 1, "pass": 2}
+    order = {"refuse": 0, "warn": 1, "not checked": 2, "pass": 3}
     counts = {level: sum(row["level"] == level for row in checks) for level in order}
     usability = "can be used, with care" if counts["warn"] else "can be used"
     if counts["refuse"]:
         usability = "can not be used"
     lines = [
         f"Checks: the campaign {usability}; {counts['pass']} checks passed, {counts['warn']}"
-        f" warnings, {counts['refuse']} refusals.",
+        f" warnings, {counts['refuse']} refusals, {counts['not checked']} not checked.",
         "",
     ]
+    said: dict[tuple[str, str], list[str]] = {}  # one reason often stands for several checks
     for row in sorted(checks, key=lambda row: order[row["level"]]):
-        lines.append(f"{SIGNS[row['level']]} {row['check']}: {row['message']}")
+        said.setdefault((row["level"], row["message"]), []).append(row["check"])
+    for (level, message), names in said.items():
+        lines.append(f"{SIGNS[level]} {', '.join(names)}: {message}")
     return "\n".join(lines) + "\n"

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from vibroimpact.campaign.file import Channel
-from vibroimpact.campaign.force_kinds import BASE
+from vibroimpact.campaign.force_kinds import BASE, FORCE
 from vibroimpact.units import UnitError, si_factor
 
 from .sidecar import DIRECTIONS, NAME, Record, Sensor, Sidecar
@@ -75,12 +75,12 @@ def resolve_sensors(measured: Measured) -> list[ResolvedSensor]:
 def _resolved(sensor: Sensor, role: str, measured: Measured) -> ResolvedSensor | None:
     """Return the ResolvedSensor, or None after adding to problems."""
     problems = measured.problems
-    signals = _signals_of(sensor.name, sensor.variable or sensor.name, measured)
+    signals = _signals_of(sensor.name, role, sensor.variable or sensor.name, measured)
     if signals is None:
         return None
     first = signals[0]
     place = f"{measured.folder / NAME}, {sensor.name}"
-    kind = sensor.kind or first.kind or ("generic" if role == "force" else "")
+    kind = _kind(sensor, first, role)
     if not kind:
         problems.append(
             f"{place}: the kind is not known: add kind: acceleration, velocity, displacement,"
@@ -101,6 +101,8 @@ def _resolved(sensor: Sensor, role: str, measured: Measured) -> ResolvedSensor |
             f"{place}: its direction is not known: add direction: +x, -y, ... or [x, y, z], the"
             " positive sense"
         )
+    if getattr(sensor, "remove_offset", False):
+        signals = [_without_offset(signal) for signal in signals]
     unit = _unit(sensor, signals, unit_kind(role, kind), measured)
     if unit is None or not kind or point is None or direction is None:
         return None
@@ -109,6 +111,21 @@ def _resolved(sensor: Sensor, role: str, measured: Measured) -> ResolvedSensor |
         unit_from = f"{NAME}; {first.unit_from} says {first.unit}"
     channel = Channel(sensor.name, tuple(point), tuple(direction), unit, kind)
     return ResolvedSensor(channel, unit_from, signals, role)
+
+
+def _kind(sensor: Sensor, signal: Signal, role: str) -> str:
+    """Return the kind of a sensor, that of its signal where none is stated, or ""."""
+    kind = sensor.kind or signal.kind
+    return FORCE if role == "force" and kind not in (BASE, "acceleration") else kind
+
+
+def _without_offset(signal: Signal) -> Signal:
+    """Return the Signal less its median, and a note that says so."""
+    offset = float(np.nanmedian(signal.values)) if np.isfinite(signal.values).any() else 0.0
+    note = f"its offset of {offset:.4g} is taken out"
+    return replace(
+        signal, values=signal.values - offset, note="; ".join(filter(None, [signal.note, note]))
+    )
 
 
 def _unit(sensor: Sensor, signals: list[Signal], kind: str, measured: Measured) -> str | None:
@@ -141,18 +158,23 @@ def _unit_vector(direction, place, problems):
     return tuple((vector / length).tolist())
 
 
-def _signals_of(sensor: str, variable: str, measured: Measured) -> list[Signal] | None:
+def _signals_of(sensor: str, role: str, variable: str, measured: Measured) -> list[Signal] | None:
     """Return the Signal of a sensor in each record; None after adding to problems."""
     signals = [
-        _signal_of(sensor, record.variables.get(sensor, variable), record, measured)
+        _signal_of((sensor, role), record.variables.get(sensor, variable), record, measured)
         for record in measured.sidecar.records
     ]
     kept = [signal for signal in signals if signal is not None]
     return kept if len(kept) == len(signals) else None
 
 
-def _signal_of(sensor: str, wanted: str, record: Record, measured: Measured) -> Signal | None:
-    """Return the Signal of a sensor in a record; None after adding to problems."""
+def _signal_of(
+    sensor: tuple[str, str], wanted: str, record: Record, measured: Measured
+) -> Signal | None:
+    """Return the Signal of a sensor, (name, role), in a record; None after adding to problems.
+
+    Of several that are called so, it is the one that the file says is of that role.
+    """
     known: list[Signal] = []
     place = measured.folder / NAME
     for name in record.all_files():
@@ -166,11 +188,14 @@ def _signal_of(sensor: str, wanted: str, record: Record, measured: Measured) -> 
     matches = [signal for signal in known if signal.name == wanted] or [
         signal for signal in known if wanted in signal.aliases
     ]
+    of_role = [signal for signal in matches if signal.force == (sensor[1] == "force")]
+    matches = of_role if len(of_role) == 1 else matches
     if len(matches) != 1:
         what = "is not" if not matches else f"is {len(matches)} times"
         measured.problems.append(
-            f"{place}, {sensor}: the signal '{wanted}' {what} in {', '.join(record.all_files())}:"
-            f" they have {', '.join(signal.name for signal in known)}; name it with variable"
+            f"{place}, {sensor[0]}: the signal '{wanted}' {what} in"
+            f" {', '.join(record.all_files())}: they have"
+            f" {', '.join(signal.name for signal in known)}; name it with variable"
         )
         return None
     return matches[0]
@@ -228,5 +253,5 @@ def read_voltage(measured: Measured) -> list[Signal] | None:
     except UnitError as error:
         measured.problems.append(f"{measured.folder / NAME}, voltage {error}")
         return None
-    signals = _signals_of("voltage", wanted.variable, measured)
+    signals = _signals_of("voltage", "voltage", wanted.variable, measured)
     return signals and [replace(signal, values=factor * signal.values) for signal in signals]

@@ -5,7 +5,6 @@ It also gives what the files do not state.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, get_args
@@ -16,6 +15,7 @@ from vibroimpact.campaign.file import Kind
 from vibroimpact.campaign.force_kinds import ForceKind
 from vibroimpact.config.problems import PLAIN_WORDS, ConfigError, shown
 from vibroimpact.config.quantities import (
+    Band_Hz,
     Frequency_Hz,
     Length,
     Number,
@@ -26,7 +26,7 @@ from vibroimpact.config.quantities import (
 )
 from vibroimpact.config.yaml_file import read_yaml
 
-from .signals import ImportProblem, Signal
+from .signals import ImportProblem
 
 NAME = "campaign.yaml"
 Direction = Literal["x", "y", "z", "+x", "+y", "+z", "-x", "-y", "-z"]
@@ -85,9 +85,13 @@ class Sensor(Section):
 
 
 class Drive(Sensor):
-    """A force, or an acceleration of the base, which needs no point_m."""
+    """A force, or an acceleration of the base, which needs no point_m.
+
+    remove_offset: the median of the signal is taken out, which blows of a hammer do not move.
+    """
 
     kind: ForceKind | Kind | None = None  # type: ignore[assignment]
+    remove_offset: bool = False
 
 
 class Record(Section):
@@ -125,6 +129,7 @@ class Sidecar(Section):
 
     source: Text = ""
     sampling_frequency_Hz: Frequency_Hz | None = None
+    band_Hz: Band_Hz | None = None
     antialias: Text = "unknown"
     start_up: Literal["rest", "stationary"] = "stationary"
     period_samples: PeriodSamples = 0
@@ -237,42 +242,3 @@ def _sentence(path: str | Path, error: Mapping, data: Any) -> str:
         return f"{path}: unknown key {place}: docs/bring_your_own.md shows those there are"
     text = PLAIN_WORDS.get(error["type"]) or error["msg"].replace("Input should be", "must be")
     return f"{path}: {place} = {shown(value)} {text}"
-
-
-def draft_sidecar(folder: str | Path, signals: list[Signal]) -> str:
-    """Return the text of a campaign.yaml to be completed by the user.
-
-    It has every signal of the first file, and every file as a record.
-    """
-    lines = [
-        (
-            "# Fill in every ???, delete the signals that are not channels, then move the forces"
-            " to 'forces'."
-        ),
-        f"source: {json.dumps(Path(folder).name, ensure_ascii=False)}",
-        "forces:",
-        "  - {name: ???, variable: ???, unit: N, point_m: [???, ???, ???], direction: ???}",
-        "channels:",
-    ]
-    first = signals[0].file if signals else ""
-    for signal in (signal for signal in signals if signal.file == first):
-        direction = next(
-            (
-                text
-                for text, vector in DIRECTIONS.items()
-                if vector == signal.direction and len(text) == 2
-            ),
-            "???",
-        )
-        place = list(signal.point) if signal.point else "[???, ???, ???]"
-        name, unit = (json.dumps(text, ensure_ascii=False) for text in (signal.name, signal.unit))
-        lines.append(
-            f"  - {{name: {name}, variable: {name}, unit: {unit if signal.unit else '???'},"
-            f" kind: {signal.kind or '???'}, point_m: {place}, direction: {direction}}}"
-        )
-    files = dict.fromkeys(Path(signal.file).name for signal in signals)
-    records = [
-        f"  - {{file: {json.dumps(name, ensure_ascii=False)}, gap_m: ???, split: fit}}"
-        for name in files
-    ]
-    return "\n".join([*lines, "records:", *records]) + "\n"

@@ -8,10 +8,25 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-TIME_NAMES = ("time", "t", "time_s", "time (s)", "time [s]")
+TIME_NAMES = ("time", "t", "time_s", "time (s)", "time [s]", "zeit")
+# Files of recorders that are not read, by the end of their name: what they are, and the remedy.
+UNREAD = {
+    ".lvm": "is a LabVIEW measurement file, which is not read: save its table as CSV, with one line"
+    " of names above it, or convert it with the Python package lvm_read",
+    ".tdms": "is a TDMS file of National Instruments, which is not read: export it as CSV or"
+    " MATLAB, or convert it with the Python package npTDMS",
+    ".mf4": "is an ASAM MDF file, which is not read: export it as CSV or MATLAB, or convert it with"
+    " the Python package asammdf",
+    ".wav": "is a sound file, which has no units: export it as MATLAB or UFF",
+    ".txt": "is a text file: where it holds a table, rename it to .csv",
+    ".xlsx": "is a workbook, which is not read: save its sheet as CSV",
+}
+for alike, known in ((".mdf", ".mf4"), (".asc", ".txt"), (".dat", ".txt"), (".xls", ".xlsx")):
+    UNREAD[alike] = UNREAD[known]
 RATE_NAMES = ("Fs", "fs", "sampling_frequency", "sampling_frequency_Hz", "sample_rate")
 EVEN_WITHIN = 0.05  # steps: scatter of time stamps about an even grid
 LOST_SAMPLE = 1.5  # steps: a longer interval means that samples are missing
+COARSEST = 0.6  # steps: of time stamps that are rounded, not uneven
 WHOLE_WITHIN = 5.0e-6  # relative: a rate printed with six digits stands for a whole number of Hz
 
 
@@ -34,6 +49,7 @@ class Signal:
     unit_from: where in the file the unit stands.
     aliases: other names of the signal.
     note: how the file was read and its values were changed.
+    start: s, of the first sample; None where the file has no time.
     lines (time,): line of the file that holds a sample, None where the file has none.
     """
 
@@ -49,6 +65,7 @@ class Signal:
     force: bool = False
     aliases: tuple = ()
     note: str = ""
+    start: float | None = None
     lines: np.ndarray | None = None
 
     def place(self, sample: int) -> str:
@@ -66,9 +83,10 @@ def even_samples(time: np.ndarray, values: np.ndarray, place: str) -> tuple[np.n
     values (..., time).
     place: file and signal, for messages.
 
-    Stamps count as even where they scatter by less than a twentieth of a step, or by less than
-    their six printed digits. Others are interpolated by a cubic spline at the mean step, and the
-    note says so. Raises ImportProblem for lost samples or stamps that do not increase.
+    Stamps count as even where they scatter by less than a twentieth of a step, by less than their
+    six printed digits, or by the digits that they are rounded to. Others are interpolated by a
+    cubic spline at the mean step, and the note says so. Raises ImportProblem for lost samples or
+    stamps that do not increase.
     """
     time = np.asarray(time, float)
     steps = np.diff(time) if np.all(np.isfinite(time)) else np.zeros(0)
@@ -79,6 +97,8 @@ def even_samples(time: np.ndarray, values: np.ndarray, place: str) -> tuple[np.n
             " leave the time out of it and give sampling_frequency_Hz in campaign.yaml"
         )
     printed = 1.05 * 10.0 ** (np.floor(np.log10(max(np.abs(time).max(), 1e-300))) - 5.0)
+    rounded = _rounding(time, typical)
+    digits, printed = 1.05 * rounded > printed, max(printed, 1.05 * rounded)
     if np.any(steps > LOST_SAMPLE * typical + 2.0 * printed) or np.any(steps < -2.0 * printed):
         index = int(np.argmax(np.abs(steps - typical)))
         raise ImportProblem(
@@ -88,9 +108,12 @@ def even_samples(time: np.ndarray, values: np.ndarray, place: str) -> tuple[np.n
         )
     step = (time[-1] - time[0]) / (time.size - 1)
     grid = time[0] + step * np.arange(time.size)
-    rate = whole_rate(1.0 / step)
-    if np.max(np.abs(time - grid)) <= max(EVEN_WITHIN * step, printed):
-        return values, rate, ""
+    rate = whole_rate(1.0 / step, rounded / (step * time.size))
+    off = np.max(np.abs(time - grid))
+    if off <= max(EVEN_WITHIN * step, printed):
+        told = digits and off > EVEN_WITHIN * step
+        note = f"times are rounded to {rounded:g} s: taken as even, at {rate:g} Hz" if told else ""
+        return values, rate, note
     holes = np.argwhere(~np.isfinite(values))
     if holes.size or np.any(steps <= 0.0):
         where = f"sample {holes[0][-1]} is no number" if holes.size else "two samples share a time"
@@ -102,6 +125,20 @@ def even_samples(time: np.ndarray, values: np.ndarray, place: str) -> tuple[np.n
     return even, rate, f"unevenly sampled: interpolated to {rate:g} Hz"
 
 
-def whole_rate(rate: float) -> float:
-    """Return a sampling frequency in Hz, whole where it is so to six digits."""
-    return float(round(rate)) if abs(rate - round(rate)) < WHOLE_WITHIN * rate else float(rate)
+def _rounding(time: np.ndarray, step: float) -> float:
+    """Return the power of ten in s that time stamps (time,) are rounded to where they have the
+    fewest decimals, at the end; 0 where it is finer than six digits or no small part of a step.
+    """
+    largest = np.abs(time).max()
+    late = time[np.abs(time) >= 10.0 ** np.floor(np.log10(max(largest, 1e-300)))]
+    for decimals in range(10):
+        unit = 10.0**-decimals
+        if unit < COARSEST * step and np.all(np.abs(late / unit - np.round(late / unit)) < 1e-3):
+            return unit if unit > 1e-5 * largest else 0.0
+    return 0.0
+
+
+def whole_rate(rate: float, within: float = 0.0) -> float:
+    """Return a sampling frequency in Hz, whole where it is so to six digits, or within a share."""
+    whole = abs(rate - round(rate)) < max(WHOLE_WITHIN, within) * rate
+    return float(round(rate)) if whole else float(rate)

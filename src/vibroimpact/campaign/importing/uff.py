@@ -6,6 +6,7 @@ Nodes are taken from datasets 15 and 2411, units from 164.
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -39,10 +40,11 @@ AGAIN = "export it again"
 def read_uff(path: str | Path) -> list[Signal]:
     """Return the Signals of the time records of a file.
 
-    A signal is named node:axis, as 12:+y. Its aliases are the entity's name and the first
+    A signal is named node:axis, as 12:+y; where a node has several, as a drive point has, with its
+    quantity: "12:+y force". Its aliases are node:axis, the entity's name and the first
     identification line. Raises ImportProblem when the file can not be read or has no time record.
     """
-    types, sets = _datasets(path)
+    types, sets = read_datasets(path)
     units = next((data for index, data in sets.items() if types[index] == 164), None)
     if units is not None and not all(0.0 < units[key] < np.inf for key in ("length", "force")):
         raise ImportProblem(
@@ -50,20 +52,46 @@ def read_uff(path: str | Path) -> list[Signal]:
             f" length and force per SI unit: {AGAIN}"
         )
     tables = [data for index, data in sets.items() if types[index] in (15, 2411)]
-    nodes = _nodes(tables, units, path)
+    nodes = nodes_of(tables, units, path)
     functions = [data for index, data in sets.items() if types[index] == 58]
     signals = [_signal(data, path, nodes, units) for data in functions if _is_time_record(data)]
     if not signals:
         found = sorted({f"{data['func_type']} ({data.get('id1', '')})" for data in functions})
+        remedy = "export the time histories"
+        if any(data["func_type"] == 4 for data in functions):
+            remedy += f", or hold its frequency responses to a model: vibroimpact compare {path}"
         raise ImportProblem(
             f"{path}: holds no time record (dataset 58, function type 1); it has datasets"
             f" {sorted(set(types))}{', function types ' + ', '.join(found) if found else ''}:"
-            " export the time histories"
+            f" {remedy}"
         )
+    return _with_own_names(signals)
+
+
+def _with_own_names(signals):
+    """Return the Signals, each with a name of its own: node:axis, then its quantity, then its last
+    alias, then a number, as far as it takes.
+    """
+    for level in range(3):
+        names = [signal.name for signal in signals]
+        details = [
+            (
+                "force" if signal.force else signal.kind.replace("_", " "),
+                signal.aliases[-1] if len(signal.aliases) > 1 else "",
+                f"#{names[: index + 1].count(signal.name)}",
+            )[level]
+            for index, signal in enumerate(signals)
+        ]
+        signals = [
+            replace(signal, name=f"{signal.name} {detail}".rstrip())
+            if names.count(signal.name) > 1
+            else signal
+            for signal, detail in zip(signals, details, strict=True)
+        ]
     return signals
 
 
-def _datasets(path):
+def read_datasets(path: str | Path) -> tuple[list[int], dict[int, dict]]:
     """Return (number of each dataset, {index: content} of those that are read).
 
     Raises ImportProblem for a file that is damaged: pyuff leaves out what it can not name.
@@ -122,7 +150,7 @@ def _is_time_record(data):
 def _signal(data, path, nodes, units):
     """Return the Signal of one dataset 58."""
     node, axis = int(data["rsp_node"]), int(data["rsp_dir"])
-    name = f"{node}:{_axis_text(axis)}"
+    name = node_name(node, axis)
     place = f"{path}, {name}"
     values, stated = np.asarray(data["data"], float), int(data["num_pts"])
     if not 1 < stated == values.size:
@@ -132,17 +160,18 @@ def _signal(data, path, nodes, units):
         )
     second = _second(data, place)
     if data["abscissa_spacing"] == 1:
-        step = data["abscissa_inc"] * second
+        step, start = (data[key] * second for key in ("abscissa_inc", "abscissa_min"))
         rate, note = whole_rate(1.0 / step) if SHORTEST_STEP < step < np.inf else None, ""
     else:
         time = np.asarray(data["x"], float) * second
         values, rate, note = even_samples(time, values, place)
+        start = time[0]
     type_ = int(data["ordinate_spec_data_type"])
-    unit, unit_from = _unit(data, type_, units)
+    unit, unit_from = unit_of(data, type_, units)
     direction = tuple(np.sign(axis) * np.eye(3)[abs(axis) - 1]) if abs(axis) in AXES else None
     aliases = tuple(
         text
-        for text in (_text(data.get("rsp_ent_name")), _text(data.get("id1")))
+        for text in (name, _text(data.get("rsp_ent_name")), _text(data.get("id1")))
         if text not in NOTHING
     )
     return Signal(
@@ -158,6 +187,7 @@ def _signal(data, path, nodes, units):
         type_ in FORCE_TYPES,
         aliases,
         note,
+        start=float(start),
     )
 
 
@@ -180,15 +210,17 @@ def _second(data, place):
         raise ImportProblem(f"{place}: its abscissa {error}") from error
 
 
-def _axis_text(axis):
-    return f"{'+' if axis > 0 else '-'}{AXES[abs(axis)]}" if abs(axis) in AXES else str(axis)
+def node_name(node: int, axis: int) -> str:
+    """Return how a node and its direction, 1 to 3 or -3 to -1, are named: 12:+y."""
+    text = f"{'+' if axis > 0 else '-'}{AXES[abs(axis)]}" if abs(axis) in AXES else str(axis)
+    return f"{node}:{text}"
 
 
 def _text(value):
     return str(value or "").strip()
 
 
-def _unit(data, type_, units):
+def unit_of(data: dict, type_: int, units: dict | None) -> tuple[str, str]:
     """Return (unit as UDUNITS text, where it is stated); "" where the file does not state it.
 
     It is the axis label, else dataset 164 with the type of the ordinate.
@@ -206,7 +238,7 @@ def _unit(data, type_, units):
     return unit if abs(factor - 1.0) < 1e-9 else f"{factor:.12g} {unit}", "dataset 164"
 
 
-def _nodes(tables, units, path):
+def nodes_of(tables: list[dict], units: dict | None, path: str | Path) -> dict[int, tuple]:
     """Return {node: (x, y, z) in m} of datasets 15 and 2411.
 
     Empty without dataset 164, which gives their unit. Raises ImportProblem for incomplete nodes and

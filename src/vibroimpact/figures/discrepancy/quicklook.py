@@ -115,9 +115,9 @@ def _caption(campaign, measured, panels, left_out):
     return (
         f"Campaign: {source}. PSD of each force and response in SI units, Hann windows, mean power"
         f" in bins of 1/{BINS_PER_OCTAVE} octave, one curve per record, light for high loads;"
-        " dashed: held out. The shaded band is what the force excites. Last panel: RMS of each"
-        " response over its RMS at the lowest level; a linear structure follows the grey"
-        f" line.{hidden}"
+        " dashed: held out. The shaded band is what the force excites, or what the file states."
+        " Last panel: RMS of each response about its mean over that at the lowest level; a linear"
+        f" structure follows the grey line.{hidden}"
     )
 
 
@@ -176,7 +176,7 @@ def _binned(values, rate, band):
     They begin at a third of the lowest excited frequency.
     """
     segment_s = values.size / rate / (0.5 * SEGMENTS + 0.5)
-    spectra = segment_spectra(values, rate, Averaging(segment_s))
+    spectra = segment_spectra(values - values.mean(), rate, Averaging(segment_s))
     psd = psd_statistics(spectra.values)[0][0]
     first = max(spectra.frequency[1], (band[0] if band else spectra.frequency[1]) / 3.0)
     place = np.floor(np.log2(np.maximum(spectra.frequency, 1e-9) / first) * BINS_PER_OCTAVE)
@@ -193,9 +193,7 @@ def _levels(sheet, axes, measured):
     order = np.argsort(measured.load_rms, kind="stable")
     loads = measured.load_rms[order]
     for index, name in enumerate(measured.channels):
-        rms = np.array(
-            [np.sqrt(np.mean(np.square(measured.response[record][index]))) for record in order]
-        )
+        rms = np.array([np.std(measured.response[record][index]) for record in order])
         if not (np.isfinite(rms[0]) and rms[0] > 0.0):
             continue
         sheet.line(
