@@ -11,7 +11,7 @@ import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from vibroimpact import __version__
+from vibroimpact import __version__, stability_command
 from vibroimpact.diagnosis import diagnose_command, supports_command
 from vibroimpact.equivalent_support.command import add_arguments
 
@@ -128,6 +128,15 @@ def _parser() -> argparse.ArgumentParser:
         " campaign can not be compared with the model.",
     )
     supports_command.add_arguments(supports)
+    stability = commands.add_parser(
+        "stability",
+        help="print the critical velocities of a tube in a cross flow",
+        description="Print the ratio of the effective to the critical velocity of each mode of a"
+        " tube in a cross flow, with all its supports holding and without some of them; with a"
+        " fluid-elastic force also the velocity at which an eigenvalue begins to grow. The section"
+        " flow of the configuration gives velocities, density and criterion. Nothing is simulated.",
+    )
+    stability_command.add_arguments(stability)
     for name, command, what in (
         ("schema", _schema, "print the JSON schema of a study configuration"),
         ("reference", _reference, "print the reference of every configuration key as Markdown"),
