@@ -49,6 +49,7 @@ PACKAGES = (
     "study",
     "equivalent_support",
     "effects",
+    "wear",
     "verdict",
     "diagnosis",
     "acceptance",
