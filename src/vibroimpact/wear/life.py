@@ -28,7 +28,7 @@ class NoWear(ValueError):
 class WearRow:
     """The wear of the tube at one support, at one load and gap, with one coefficient.
 
-    work_rate_W: median over seeds. years_to_limit: until `limit` of the wall is worn, infinite
+    work_rate_W: median over seeds. depth_m: no deeper than the wall. years_to_limit: until `limit` of the wall is worn, infinite
     without work.
     """
 
@@ -119,7 +119,7 @@ def _rows(
     for coefficient in service.coefficients:
         per_year = coefficient * rate * service.duty * YEAR_S
         volume = per_year * service.years
-        depth = depth_of(volume, *shape)
+        depth = min(depth_of(volume, *shape), wall)  # then it is worn through
         yield WearRow(
             *place,
             rate,
