@@ -28,8 +28,8 @@ class NoWear(ValueError):
 class WearRow:
     """The wear of the tube at one support, at one load and gap, with one coefficient.
 
-    work_rate_W: median over seeds. depth_m: no deeper than the wall. years_to_limit: until `limit` of the wall is worn, infinite
-    without work.
+    work_rate_W: median over seeds. depth_m: no deeper than the wall. years_to_limit: until `limit`
+    of the wall is worn, infinite without work.
     """
 
     load_rms_N: float
