@@ -54,6 +54,7 @@ PUBLIC = {
     "diagnose": "diagnosis.diagnose",
     "Verdict": "verdict.content",
     "virtual_supports": "diagnosis.supports",
+    "stability": "flow.stability",
     "read_record": "records",
     "write_record": "records",
     "configurations": "study_folder.shared_files",

@@ -33,6 +33,7 @@ from .equivalent_support.estimate import estimate_equivalent as estimate_equival
 from .equivalent_support.export_formats.registry import springs_text as springs_text
 from .equivalent_support.springs import point_springs as point_springs
 from .equivalent_support.study_answer import equivalent as equivalent
+from .flow.stability import stability as stability
 from .identify.estimate import Estimate as Estimate
 from .identify.identify_case import identify_case as identify_case
 from .linear.modes import natural_frequencies as natural_frequencies

@@ -11,9 +11,10 @@ import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from vibroimpact import __version__
+from vibroimpact import __version__, stability_command
 from vibroimpact.diagnosis import diagnose_command, supports_command
 from vibroimpact.equivalent_support.command import add_arguments
+from vibroimpact.wear import command as wear_command
 
 # Read when numpy is first imported. The matrices are small: threads would wait for each other, and
 # take up to ten times the CPU. Runs are what is done side by side.
@@ -142,6 +143,23 @@ def _parser() -> argparse.ArgumentParser:
         " campaign can not be compared with the model.",
     )
     supports_command.add_arguments(supports)
+    stability = commands.add_parser(
+        "stability",
+        help="print the critical velocities of a tube in a cross flow",
+        description="Print the ratio of the effective to the critical velocity of each mode of a"
+        " tube in a cross flow, with all its supports holding and without some of them; with a"
+        " fluid-elastic force also the velocity at which an eigenvalue begins to grow. The section"
+        " flow of the configuration gives velocities, density and criterion. Nothing is simulated.",
+    )
+    stability_command.add_arguments(stability)
+    wear = commands.add_parser(
+        "wear",
+        help="print the depth of wear at the supports of a finished study",
+        description="Print how deep each support wears the wall of the tube, from the work rates of"
+        " a finished study and wear coefficients: Archard's law, and the shape of the support. One"
+        " line per load and gap, for the support that wears most; --csv writes all.",
+    )
+    wear_command.add_arguments(wear)
     for name, command, what in (
         ("schema", _schema, "print the JSON schema of a study configuration"),
         ("reference", _reference, "print the reference of every configuration key as Markdown"),

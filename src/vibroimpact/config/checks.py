@@ -16,6 +16,7 @@ from functools import cache
 from typing import Any
 
 from . import (
+    flow_checks,
     geometry_checks,
     initial_checks,
     profile_checks,
@@ -332,12 +333,16 @@ TUBE_CHECKS: tuple[Callable[..., Problems], ...] = (
     turbulence_checks.stretches,
     turbulence_checks.direction,
     turbulence_checks.points_of_spectrum,
+    flow_checks.stretches,
+    flow_checks.direction,
+    flow_checks.pitch,
     _step_and_modes,
 )
 POINT_CHECKS: tuple[Callable[..., Problems], ...] = (
     names.point_supports,
     names.places_of_points,
     turbulence_checks.needs_a_tube,
+    flow_checks.acts_along_a_tube,
 )
 CHECKS: tuple[Callable[..., Problems], ...] = (
     *TUBE_CHECKS,
@@ -360,6 +365,7 @@ CHECKS: tuple[Callable[..., Problems], ...] = (
     names.sensors,
     names.driven_direction_is_recorded,
     turbulence_checks.band,
+    flow_checks.lags,
     _force,
     _overlay,
     _bands_below_nyquist,

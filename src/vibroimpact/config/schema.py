@@ -12,6 +12,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from .excitation import Excitation
+from .flow import Flow
 from .initial import Initial
 from .quantities import (
     Axis,
@@ -363,3 +364,6 @@ class Config(Section):
         " statistics.",
     )
     overlay: Overlay = Field(Overlay(), description="The campaign of figure 5.")
+    flow: Flow | None = Field(
+        None, description="A flow across the tube, for `vibroimpact stability`; null for none."
+    )

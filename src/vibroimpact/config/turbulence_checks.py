@@ -14,6 +14,7 @@ from vibroimpact.geometry.centreline import Centreline, build_centreline
 from vibroimpact.geometry.sections import outer_width
 
 from .excitation import Excitation
+from .flow import FlowStretch
 from .geometry_checks import Tube, path_directions, points_on_the_tube
 from .structure import Structure
 from .turbulence import Stretch
@@ -37,12 +38,18 @@ def needs_a_tube(structure: Structure, excitation: Excitation) -> Problems:
 
 def stretches(structure: Tube, excitation: Excitation) -> Problems:
     """Yield a problem unless the stretches of turbulence are on the tube and do not overlap."""
+    if excitation.kind == "turbulence":
+        yield from stretches_of_flow(structure, excitation.stretches, "excitation")
+
+
+def stretches_of_flow(structure: Tube, given: Sequence[Any], section: str) -> Problems:
+    """Yield a problem unless stretches of a section are on the tube and do not overlap."""
     line = _centreline(structure)
-    if excitation.kind != "turbulence" or line is None:
+    if line is None:
         return
     taken = []
-    for index, stretch in enumerate(excitation.stretches):
-        place = f"excitation.stretches[{index}]"
+    for index, stretch in enumerate(given):
+        place = f"{section}.stretches[{index}]"
         off = [*_off_the_tube(structure, stretch, place)]
         yield from off
         if off:
@@ -58,31 +65,37 @@ def stretches(structure: Tube, excitation: Excitation) -> Problems:
     for (_, end, one), (begin, _, other) in pairwise(sorted(taken)):
         if begin < end - TOLERANCE:
             yield (
-                f"excitation.stretches[{other}]",
-                list(excitation.stretches[other].from_m),
+                f"{section}.stretches[{other}]",
+                list(given[other].from_m),
                 f"overlaps stretches[{one}]: let one end where the other begins",
             )
 
 
 def direction(structure: Tube, excitation: Excitation) -> Problems:
     """Yield a problem unless the direction of turbulence is across the tube wherever it acts."""
+    if excitation.kind == "turbulence":
+        yield from direction_of_flow(structure, excitation, "excitation")
+
+
+def direction_of_flow(structure: Tube, flow: Any, section: str) -> Problems:
+    """Yield a problem unless the direction of a section is across the tube wherever it acts."""
     line = _centreline(structure)
-    if excitation.kind != "turbulence" or line is None:
+    if line is None:
         return
     acting = [
         _ends(line, stretch)
-        for stretch in excitation.stretches
+        for stretch in flow.stretches
         if not any(_off_the_tube(structure, stretch, ""))
     ]
-    along = np.asarray(excitation.direction) / np.linalg.norm(excitation.direction)
-    for begin, end in acting if excitation.stretches else [(0.0, line.length)]:
+    along = np.asarray(flow.direction) / np.linalg.norm(flow.direction)
+    for begin, end in acting if flow.stretches else [(0.0, line.length)]:
         places = np.linspace(begin, end, ALONG_TUBE)
         sines = [np.linalg.norm(np.cross(line.direction(place), along)) for place in places]
         if min(sines) < LEAST_SINE:
             at = line.position(places[int(np.argmin(sines))])
             yield (
-                "excitation.direction",
-                list(excitation.direction),
+                f"{section}.direction",
+                list(flow.direction),
                 (
                     f"is along the tube at {np.round(at, 4).tolist()} m: give a direction across"
                     " the tube wherever the force acts, or stretches without that place"
@@ -96,14 +109,14 @@ def _centreline(structure: Tube) -> Centreline | None:
     return None if any(path_directions(structure)) else build_centreline(structure)
 
 
-def _off_the_tube(structure: Tube, stretch: Stretch, place: str) -> Problems:
+def _off_the_tube(structure: Tube, stretch: Stretch | FlowStretch, place: str) -> Problems:
     """Yield a problem for each end of a stretch that is off the tube."""
     for key in ("from_m", "to_m"):
         for _, value, text in points_on_the_tube(structure, {key: getattr(stretch, key)}):
             yield f"{place}.{key}", value, text
 
 
-def _ends(line: Centreline, stretch: Stretch) -> tuple[float, float]:
+def _ends(line: Centreline, stretch: Stretch | FlowStretch) -> tuple[float, float]:
     """Return the arc lengths in m of the ends of a stretch, ascending."""
     begin, end = sorted(line.locate(at, "stretch") for at in (stretch.from_m, stretch.to_m))
     return begin, end

@@ -1,0 +1,127 @@
+"""The keys of a flow across a tube, for its fluid-elastic stability."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from .quantities import (
+    By_kind,
+    Direction,
+    Length_m,
+    Not_empty,
+    Number,
+    Positive_factor,
+    Range,
+    Section,
+    Unit,
+    Vector,
+)
+from .turbulence import Fluid_density, Velocity
+
+Constant = Annotated[Number, Range("Connors' constant is about 2.4 to 10", above=0, at_most=100)]
+Coefficient = Annotated[Number, Range("a coefficient of the force", at_least=-1e4, at_most=1e4)]
+Positive_number = Annotated[Number, Range("give a positive number", above=0, at_most=1e4)]
+
+
+class FlowStretch(Section):
+    """A stretch of the tube with a flow of its own."""
+
+    from_m: Vector = Field(
+        description="Position of one end of the stretch, within 5 mm of the centreline.",
+        examples=[[0.0, 0.0, 0.8]],
+    )
+    to_m: Vector = Field(
+        description="Position of the other end, within 5 mm of the centreline.",
+        examples=[[0.0, 0.0, 1.6]],
+    )
+    velocity_factor: Positive_factor = Field(
+        1.0,
+        description="Velocity there over flow.velocity_m_per_s. A profile is cut into stretches.",
+        examples=[0.5],
+    )
+    density_kg_per_m3: Fluid_density | None = Field(
+        None,
+        description="Density of the fluid outside there; null for flow.density_kg_per_m3.",
+        examples=[145.7],
+    )
+
+
+class Connors(Section):
+    """Connors' criterion: V_c = K f sqrt(m 2 pi zeta / density)."""
+
+    kind: Literal["connors"] = Field(description="This kind of criterion.", examples=["connors"])
+    constant: Annotated[tuple[Annotated[Constant, Unit("1")], ...], Not_empty] = Field(
+        description="K, or several for a range. It belongs to the pattern of the bundle and to the"
+        " definition of damping of its source, so that there is no default.",
+        examples=[[2.4, 4.0]],
+    )
+
+
+class Tema(Section):
+    """The criterion of TEMA: V_c = D_T f D, with a factor D_T of pattern, pitch, mass and damping.
+
+    The factors are second-hand: compare them with the standard before a design rests on them.
+    """
+
+    kind: Literal["tema"] = Field(description="This kind of criterion.", examples=["tema"])
+    pattern_deg: Literal[30, 45, 60, 90] = Field(
+        description="Angle of the pattern: 30 and 60 triangular, 45 and 90 square.", examples=[90]
+    )
+    pitch_m: Length_m = Field(
+        description="Distance of the axes of neighbouring tubes.", examples=[0.0325]
+    )
+
+
+class Lags(Section):
+    """A fluid-elastic force with memory, of one tube in a rigid bundle:
+
+    F = -density V²/2 (a0 u + a1 (D/V) u' + sum b_j z_j),  z_j' = -gamma_j (V/D) z_j + u'.
+
+    The quasi-steady force with a lag has a0 = -dC_L/d(y/D), a1 = C_D, b = [dC_L/d(y/D)] and
+    gamma = [1/mu], with the delay mu D/V.
+    """
+
+    kind: Literal["lags"] = Field(description="This kind of coupling.", examples=["lags"])
+    stiffness: Annotated[Coefficient, Unit("1")] = Field(description="a0.", examples=[20.0])
+    damping: Annotated[Coefficient, Unit("1")] = Field(description="a1.", examples=[0.3])
+    amplitudes: tuple[Annotated[Coefficient, Unit("1")], ...] = Field(
+        (), description="b, one for each lag.", examples=[[-20.0]]
+    )
+    rates: tuple[Annotated[Positive_number, Unit("1")], ...] = Field(
+        (), description="gamma, one for each lag.", examples=[[1.0]]
+    )
+
+
+class Flow(Section):
+    """A flow across the tube, for `vibroimpact stability`. It changes no simulation."""
+
+    velocity_m_per_s: Annotated[tuple[Velocity, ...], Not_empty] = Field(
+        description="Velocities between the tubes: of an upstream velocity times P / (P - D).",
+        examples=[[1.0, 2.0, 3.0]],
+    )
+    density_kg_per_m3: Fluid_density = Field(
+        description="Density of the fluid outside; of a mixture the void fraction times that of the"
+        " vapour, plus the rest times that of the liquid.",
+        examples=[998.0],
+    )
+    direction: Direction = Field(
+        description="Direction of the fluid-elastic force, across the flow. Its part along the tube"
+        " is left out.",
+        examples=[[0.0, 1.0, 0.0]],
+    )
+    both_directions: bool = Field(
+        False,
+        description="Whether the direction across it and the tube is computed too.",
+        examples=[True],
+    )
+    stretches: tuple[FlowStretch, ...] = Field(
+        (), description="Stretches that the flow acts on; none for the whole tube."
+    )
+    criterion: Annotated[Connors | Tema, By_kind] = Field(
+        description="What gives the critical velocity of a mode."
+    )
+    coupling: Lags | None = Field(
+        None, description="Fluid-elastic force, for eigenvalues against velocity; null for none."
+    )

@@ -1,0 +1,53 @@
+"""The checks of a flow across the tube. Each yields (place, value, text), see checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from vibroimpact.geometry.sections import outer_width
+
+from .flow import Flow
+from .geometry_checks import Tube
+from .structure import Structure
+from .turbulence_checks import direction_of_flow, stretches_of_flow
+
+Problems = Iterator[tuple[str, Any, str]]
+
+
+def acts_along_a_tube(structure: Structure, flow: Flow) -> Problems:
+    """Yield a problem: a flow acts along a tube, and this structure is none."""
+    yield "flow", "...", f"acts along a tube, structure.kind is {structure.kind}: leave it out"
+
+
+def stretches(structure: Tube, flow: Flow) -> Problems:
+    """Yield a problem unless the stretches of the flow are on the tube and do not overlap."""
+    yield from stretches_of_flow(structure, flow.stretches, "flow")
+
+
+def direction(structure: Tube, flow: Flow) -> Problems:
+    """Yield a problem unless the fluid-elastic force is across the tube wherever it acts."""
+    yield from direction_of_flow(structure, flow, "flow")
+
+
+def pitch(structure: Tube, flow: Flow) -> Problems:
+    """Yield a problem unless neighbouring tubes leave a gap."""
+    width = outer_width(structure.section)
+    if flow.criterion.kind == "tema" and flow.criterion.pitch_m <= width:
+        yield (
+            "flow.criterion.pitch_m",
+            flow.criterion.pitch_m,
+            f"is not above the diameter of the tube, {width:g} m: give the distance of two axes",
+        )
+
+
+def lags(flow: Flow) -> Problems:
+    """Yield a problem unless each lag has an amplitude and a rate."""
+    own = flow.coupling
+    if own is not None and len(own.amplitudes) != len(own.rates):
+        yield (
+            "flow.coupling.rates",
+            list(own.rates),
+            f"has {len(own.rates)} values, amplitudes has {len(own.amplitudes)}: give one of each"
+            " per lag",
+        )
