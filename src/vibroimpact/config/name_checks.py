@@ -53,6 +53,7 @@ def known_points(
     record: RecordKeys,
     supports: Sequence[Support],
     elements: Sequence[LocalElement],
+    masses: Sequence[PointMass],
 ) -> Problems:
     """Yield a problem unless points that the configuration names are there."""
     names = names_of_points(structure, points)
@@ -68,6 +69,7 @@ def known_points(
             for key in ("point", "other_point")
             if getattr(entry, key) is not None
         ]
+    named += [(f"masses[{i}].point", mass.point) for i, mass in enumerate(masses)]
     for place, name in named:
         if name not in names:
             close = get_close_matches(name, names, n=1)

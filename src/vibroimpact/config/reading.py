@@ -6,7 +6,9 @@ from __future__ import annotations
 
 import copy
 import os
+import re
 from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
 from typing import Annotated, Any
 
 from pydantic import TypeAdapter, ValidationError
@@ -35,22 +37,22 @@ def check_config(data: dict[str, Any], source: str) -> Config:
     source: what the mapping was read from; it begins every sentence.
     Raises ConfigError with every problem.
     """
-    problems = []
-    config = None
-    try:
-        config = Config.model_validate(data)
-        sections = {name: getattr(config, name) for name in Config.model_fields}
-    except ValidationError as error:
-        errors = error.errors(include_url=False)
-        problems = [sentence(each, data) for each in errors]
-        sections = _valid_sections(
-            _without_unknown_keys(data, errors),
-            {each["loc"][0] for each in errors if each["type"] != UNKNOWN},
-        )
+    problems: list[str] = []
+    mended: dict[str, Any] | None = data
+    while mended is not None:  # once more where a mistake has hidden others
+        read, errors = mended, []
+        try:
+            config = Config.model_validate(read)
+            sections = {name: getattr(config, name) for name in Config.model_fields}
+        except ValidationError as error:
+            errors = error.errors(include_url=False)
+            sections = _valid_sections(read, {each["loc"][0] for each in errors})
+        problems += [sentence(each, read) for each in errors]
+        mended = _mended(read, errors)
     problems += [
         f"{place} = {shown(value)} {text}" for place, value, text in cross_problems(sections)
     ]
-    if problems or config is None:
+    if problems:
         raise ConfigError([f"{source}: {problem}" for problem in dict.fromkeys(problems)])
     return config
 
@@ -68,19 +70,27 @@ def _valid_sections(data: dict[str, Any], invalid: set) -> dict[str, Any]:
     return sections
 
 
-def _without_unknown_keys(data: dict[str, Any], errors: Sequence[Mapping[str, Any]]) -> dict:
-    """Return a copy of the mapping without the keys that are not declared, so that the rest can be
-    checked.
+def _mended(data: dict[str, Any], errors: Sequence[Mapping[str, Any]]) -> dict[str, Any] | None:
+    """Return a copy of the mapping without undeclared keys and with misspelled words put right, so
+    that the rest can be checked; None where there is nothing of the kind.
     """
-    known = copy.deepcopy(data)
+    copied, mended = copy.deepcopy(data), False
     for error in errors:
+        path, words = path_in(error["loc"], data), error.get("ctx", {})
+        if error["type"] == "union_tag_invalid":
+            path.append("kind")
+        level: Any = copied
+        for part in path[:-1]:
+            level = level[part]
         if error["type"] == UNKNOWN:
-            *path, last = path_in(error["loc"], data)
-            level = known
-            for part in path:
-                level = level[part]
-            level.pop(last, None)
-    return known
+            level.pop(path[-1], None)
+            mended = True
+            continue
+        known = re.findall("'([^']*)'", words.get("expected_tags") or words.get("expected") or "")
+        given = level[path[-1]] if known else None
+        if isinstance(given, str) and (meant := get_close_matches(given, known, 1)):
+            level[path[-1]], mended = meant[0], True
+    return copied if mended else None
 
 
 def _annotation(field: FieldInfo) -> Any:

@@ -76,7 +76,7 @@ def identify_support(
     if config.identification is None:
         raise ValueError(
             f"study '{config.study}' has no section identification, which says where to look for"
-            " the equivalent support: add it, as in config/study.yaml"
+            " the equivalent support: add it; `vibroimpact reference` lists its keys"
         )
     if spectra is None:
         if "displacement" not in record:

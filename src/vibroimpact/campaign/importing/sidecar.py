@@ -143,9 +143,7 @@ def read_sidecar(path: str | Path) -> Sidecar:
     try:
         data = read_yaml(path)
     except ConfigError as error:
-        raise ImportProblem(
-            str(error).replace("config/study.yaml", "docs/bring_your_own.md")
-        ) from error
+        raise ImportProblem(str(error)) from error
     try:
         sidecar = Sidecar.model_validate(data)
     except ValidationError as error:
