@@ -70,7 +70,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="vibroimpact",
         description="Vibration of tubes and other structures with gap supports. Studies are run"
-        " with snakemake or make; these commands check what they read.",
+        " with snakemake; these commands check what they read.",
     )
     parser.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")

@@ -142,3 +142,12 @@ def test_check_names_the_file_of_a_negative_stiffness(tmp_path, capsys, reliabil
     assert main(["check", str(path)]) == 1
     assert f"{tmp_path / 'stiffness.npz'}: has a negative eigenvalue" in capsys.readouterr().err
     reliability.fault("matrices with a negative eigenvalue", "refused with file and frequency")
+
+
+@pytest.mark.parametrize(("duration", "told"), [(4.0, True), (10.0, True), (11.0, False)])
+def test_a_record_of_few_segments_is_a_warning(duration, told):
+    # Segments of 4 s; at 11 s a bin has 9 degrees of freedom, of which 8 are asked for.
+    found = check_model(check_config(smoke("record.duration_s", duration), "mine"))
+    words = f"record.duration_s = {duration:g} is"
+    assert found.problems == ()
+    assert any(words in each and "record 11 s" in each for each in found.warnings) == told

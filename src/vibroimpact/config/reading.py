@@ -31,6 +31,20 @@ def load_config(path: str | os.PathLike[str], overrides: Mapping[str, Any] | Non
     return check_config({**read_yaml(path), **(overrides or {})}, str(path))
 
 
+def config_of(config: Config | str | os.PathLike[str]) -> Config:
+    """Return a configuration as it is given, or that of a YAML file.
+
+    Raises ConfigError as load_config does, and for what is neither.
+    """
+    if isinstance(config, (str, os.PathLike)):
+        return load_config(config)
+    if not hasattr(config, "structure"):
+        raise ConfigError(
+            [f"{type(config).__name__} is no configuration: give a Config, or the path of a file"]
+        )
+    return config
+
+
 def check_config(data: dict[str, Any], source: str) -> Config:
     """Return the Config of a mapping as YAML gives it.
 

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import count
 
 from vibroimpact.config.problems import shown
 from vibroimpact.config.schema import Basis, Config
+from vibroimpact.identify.guards import FEWEST_AVERAGES, few_averages
 from vibroimpact.integration.contact_convergence import IntegrationError, checked_contraction
 from vibroimpact.integration.step_stability import require_stable_step
 from vibroimpact.reduction.model_accuracy import (
@@ -21,6 +25,7 @@ from vibroimpact.reduction.reduced_model import (
     full_structure,
     keeps_all_modes,
 )
+from vibroimpact.spectra.welch import effective_averages
 
 # A larger structure takes minutes to reduce: its job says what is wrong with it.
 MOST_DOFS = 3000
@@ -62,4 +67,26 @@ def check_model(config: Config) -> ModelChecks:
         require_accurate(accuracy)
     except (IntegrationError, ModelAccuracyError) as error:
         return ModelChecks((*problems, str(error)))
-    return ModelChecks(tuple(problems), tuple(mesh_warnings(accuracy)))
+    return ModelChecks(tuple(problems), (*short_record(config), *mesh_warnings(accuracy)))
+
+
+def short_record(config: Config) -> Iterator[str]:
+    """Yield that a record holds too few segments to identify from, and what would do."""
+    record, spectra, rate = config.record, config.spectra, config.record.sampling_frequency_Hz
+    if config.identification is None:
+        return
+    few = few_averages(effective_averages(record.duration_s, rate, spectra))
+    if not few:
+        return
+    step = spectra.segment_s * (1.0 - spectra.overlap)
+    durations = (spectra.segment_s + more * step for more in count(1))
+    enough = next(
+        duration
+        for duration in durations
+        if effective_averages(duration, rate, spectra) >= FEWEST_AVERAGES
+    )
+    yield (
+        f"record.duration_s = {record.duration_s:g} is {record.duration_s / spectra.segment_s:.2g}"
+        f" segments of spectra.segment_s = {spectra.segment_s:g} s: {few}, and every estimate is"
+        f" flagged: record {math.ceil(enough)} s, or shorten the segment"
+    )
