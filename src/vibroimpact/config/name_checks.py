@@ -115,9 +115,21 @@ def identified_points(record: RecordKeys, identification: Identification) -> Pro
 
 
 def identification_needs(
-    structure: Structure, excitation: Excitation, record: RecordKeys, identification: Identification
+    structure: Structure,
+    excitation: Excitation,
+    record: RecordKeys,
+    supports: Sequence[Support],
+    identification: Identification,
 ) -> Problems:
-    """Yield a problem unless what is identified is a tube under a broadband force."""
+    """Yield a problem unless what is identified are the supports of a tube under a broadband
+    force.
+    """
+    if not supports:
+        yield (
+            "identification",
+            "given",
+            "looks for the equivalent support, and there are no supports: leave identification out",
+        )
     if structure.kind not in TUBES:
         yield (
             "identification",
