@@ -290,7 +290,7 @@ def _named(config) -> str:
 
 
 def _problems_of_model(config) -> tuple[list[str], list[str]]:
-    """Return (problems of the model and of the measured force of a study, warnings)."""
+    """Return (problems of the model and of the measured files of a study, warnings)."""
     from vibroimpact.study.model_checks import check_model
 
     found = check_model(config)
@@ -303,6 +303,14 @@ def _problems_of_model(config) -> tuple[list[str], list[str]]:
             read_force(force.file, force.variable, force.sampling_frequency_Hz)
         except ForceFileError as error:
             problems.append(str(error))
+    if config.overlay.campaign is not None:
+        from vibroimpact.campaign.file import CampaignError, checked_description
+        from vibroimpact.records import RecordError
+
+        try:
+            checked_description(config.overlay.campaign)
+        except (CampaignError, RecordError) as error:
+            problems += [f"overlay.campaign: {line}" for line in str(error).splitlines()]
     return problems, list(found.warnings)
 
 

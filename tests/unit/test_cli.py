@@ -87,6 +87,16 @@ def test_unreadable_file_is_reported_in_a_sentence(run, tmp_path, name, content,
     assert errors.startswith(f"{path}: ") and part in errors and "Traceback" not in errors
 
 
+def test_an_overlay_is_a_campaign(run, tmp_path):
+    data = yaml.safe_load(STUDY.read_text())
+    data["overlay"]["campaign"] = str(STUDY)
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump(data))
+    code, output, errors = run("check", path)
+    assert (code, output) == (1, "")
+    assert f"overlay.campaign: {STUDY}: can not be read as netCDF" in errors
+
+
 def test_a_folder_is_a_sentence(run, tmp_path):
     assert run("check", tmp_path)[2].startswith(f"{tmp_path}: is a folder")
 

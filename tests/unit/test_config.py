@@ -5,6 +5,7 @@ key is used.
 import ast
 import copy
 import datetime
+import math
 import re
 from pathlib import Path
 
@@ -484,6 +485,34 @@ def test_a_misspelled_word_hides_no_other_mistake(study, word, mistake):
 def test_a_misspelled_word_alone_is_one_problem(study):
     put(study, "structure.kind", "u_tub")
     assert len(problems(study)) == 1
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "told"),
+    [
+        ("grid.gap_m", [math.nan], "grid.gap_m[0] = nan must be a finite number"),
+        ("grid.gap_m", [], "grid.gap_m = [] must not be empty"),
+        (
+            "seed",
+            1e19,
+            "seed = 1e+19 is too large a whole number: give at most 9223372036854775807",
+        ),
+        ("seed", 10**19, "seed = 10000000000000000000 must be <= 9.22337e+18: any whole number"),
+    ],
+)
+def test_a_wrong_value_is_one_problem_in_plain_words(study, place, value, told):
+    put(study, place, value)
+    assert problems(study) == [f"config/mine.yaml: {told}"]
+
+
+def test_a_table_of_one_point_is_told(study):
+    table = {"kind": "table", "frequency_Hz": [5.0], "psd_N2_per_m2_Hz": [0.01]}
+    study["excitation"] = {
+        "kind": "turbulence", "direction": [0.0, 1.0, 0.0], "correlation_length_m": 0.1,
+        "band_Hz": [5.0, 200.0], "spectrum": table,
+    }  # fmt: skip
+    told = problems(study)
+    assert any("frequency_Hz = [5.0] has too few values: give 2 or more" in each for each in told)
 
 
 def test_the_point_of_a_mass_is_told_with_its_place(study):

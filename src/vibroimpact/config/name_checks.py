@@ -73,7 +73,8 @@ def known_points(
     for place, name in named:
         if name not in names:
             close = get_close_matches(name, names, n=1)
-            remedy = f"did you mean '{close[0]}'?" if close else f"known are {', '.join(names)}"
+            known = f"known are {', '.join(names)}" if names else "points is empty, add it there"
+            remedy = f"did you mean '{close[0]}'?" if close else known
             yield place, name, f"is not one of the named points: {remedy}"
 
 

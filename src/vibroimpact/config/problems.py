@@ -31,7 +31,7 @@ PLAIN_WORDS = {
     "bool_type": "must be true or false",
     "bool_parsing": "must be true or false",
     "finite_number": "must be a finite number",
-    "too_short": "must not be empty",
+    "int_parsing_size": "is too large a whole number: give at most 9223372036854775807",
 }
 
 
@@ -73,6 +73,11 @@ def sentence(error: Mapping[str, Any], data: Any, whole: type[Section] = Config)
         return (
             f"{place}.kind = {shown(error['ctx']['tag'])} must be one of"
             f" {error['ctx']['expected_tags']}"
+        )
+    if error["type"] == "too_short":
+        least = error["ctx"]["min_length"]
+        return f"{place} = {shown(value)} " + (
+            "must not be empty" if least == 1 else f"has too few values: give {least} or more"
         )
     text = PLAIN_WORDS.get(error["type"]) or error["msg"].replace("Input should be", "must be")
     if "[key]" in error["loc"]:

@@ -59,7 +59,7 @@ def check_config(data: dict[str, Any], source: str) -> Config:
             config = Config.model_validate(read)
             sections = {name: getattr(config, name) for name in Config.model_fields}
         except ValidationError as error:
-            errors = error.errors(include_url=False)
+            errors = [each for each in error.errors(include_url=False) if not _follows(each)]
             sections = _valid_sections(read, {each["loc"][0] for each in errors})
         problems += [sentence(each, read) for each in errors]
         mended = _mended(read, errors)
@@ -82,6 +82,13 @@ def _valid_sections(data: dict[str, Any], invalid: set) -> dict[str, Any]:
         elif name not in data and not field.is_required():
             sections[name] = field.get_default()
     return sections
+
+
+def _follows(error: Mapping[str, Any]) -> bool:
+    """Whether an error says no more than another one: a list that is too short without the values
+    that are wrong.
+    """
+    return error["type"] == "too_short" and len(error["input"]) >= error["ctx"]["min_length"]
 
 
 def _mended(data: dict[str, Any], errors: Sequence[Mapping[str, Any]]) -> dict[str, Any] | None:
