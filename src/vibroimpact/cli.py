@@ -238,13 +238,20 @@ def _configuration(path: str) -> tuple[str | None, list[str]]:
 
 def _study(data: dict, path: str) -> tuple[str | None, list[str]]:
     """Return (what a study is, its problems). Raises ConfigError."""
+    from vibroimpact.config.problems import ConfigError
     from vibroimpact.config.reading import check_config
     from vibroimpact.study.cases import all_cases
 
-    config = check_config(data, path)
+    told: list[str] = []
+    try:
+        config = check_config(data, path)
+    except ConfigError as error:
+        if error.mended is None:
+            raise
+        config, told = error.mended, error.problems
     problems, warnings = _problems_of_model(config)
-    if problems:
-        return None, [f"{path}: {problem}" for problem in problems]
+    if told or problems:
+        return None, [*told, *(f"{path}: {problem}" for problem in problems)]
     aim = "with identification" if config.identification is not None else "without identification"
     return (
         f"study '{config.study}': structure of kind {config.structure.kind}{_named(config)},"

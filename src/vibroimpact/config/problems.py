@@ -39,11 +39,13 @@ class ConfigError(Exception):
     """A configuration that can not be used.
 
     problems: one sentence per problem; str() gives one line each.
+    mended: the configuration with its mistakes put right, where that leaves no doubt: for checks
+        that need a whole one.
     """
 
-    def __init__(self, problems: list[str]):
+    def __init__(self, problems: list[str], mended: Config | None = None):
         super().__init__("\n".join(problems))
-        self.problems = problems
+        self.problems, self.mended = problems, mended
 
 
 def sentence(error: Mapping[str, Any], data: Any, whole: type[Section] = Config) -> str:

@@ -55,6 +55,7 @@ def check_config(data: dict[str, Any], source: str) -> Config:
     mended: dict[str, Any] | None = data
     while mended is not None:  # once more where a mistake has hidden others
         read, errors = mended, []
+        config = None
         try:
             config = Config.model_validate(read)
             sections = {name: getattr(config, name) for name in Config.model_fields}
@@ -63,11 +64,11 @@ def check_config(data: dict[str, Any], source: str) -> Config:
             sections = _valid_sections(read, {each["loc"][0] for each in errors})
         problems += [sentence(each, read) for each in errors]
         mended = _mended(read, errors)
-    problems += [
-        f"{place} = {shown(value)} {text}" for place, value, text in cross_problems(sections)
-    ]
-    if problems:
-        raise ConfigError([f"{source}: {problem}" for problem in dict.fromkeys(problems)])
+    between = cross_problems(sections)
+    problems += [f"{place} = {shown(value)} {text}" for place, value, text in between]
+    if problems or config is None:
+        told = [f"{source}: {problem}" for problem in dict.fromkeys(problems)]
+        raise ConfigError(told, None if between else config)
     return config
 
 
