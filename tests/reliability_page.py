@@ -26,6 +26,10 @@ INTRODUCTION = """# Reliability
 <!-- Written by `make reliability`: do not edit. -->
 
 Every row is stated by a test that passed. `make reliability` runs these tests and writes the page.
+
+A profile of Snakemake is a program, and so is a configuration with `__use_yte__` where the default
+profile is switched off (`--workflow-profile none`): Snakemake runs it before this package reads it.
+Run `vibroimpact check FILE` on a file of others first; it runs nothing.
 """
 
 

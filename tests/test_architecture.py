@@ -218,6 +218,12 @@ def test_the_library_knows_nothing_of_the_workflow():
     assert [file for file in FILES if "snakemake" in imported_tops(file)] == []
 
 
+def test_no_sentence_of_the_library_needs_a_makefile():
+    for file in FILES:  # the installed package has none
+        text = file.read_text()
+        assert not re.search(r"\bmake (study|smoke|judges|test|docs|clean)|[Mm]akefile", text), file
+
+
 def test_modules_are_imported_by_name():
     # provenance.imported_files reads import statements: a name made at run time would hide a file
     # from its rule.

@@ -31,7 +31,7 @@ PUBLIC = {
     "SupportEstimates": "study.support_estimates",
     "simulate_cases": "study.simulation",
     "statistics_rows": "study.statistics_table",
-    "case_spectra": "study.case_spectra",
+    "case_spectra": "study.in_process",
     "segment_spectra": "spectra.welch",
     "psd_statistics": "spectra.welch",
     "natural_frequencies": "linear.modes",

@@ -46,10 +46,10 @@ from .reduction.model_file import write_model as write_model
 from .reduction.reduced_model import build_model as build_model
 from .spectra.welch import psd_statistics as psd_statistics
 from .spectra.welch import segment_spectra as segment_spectra
-from .study.case_spectra import case_spectra as case_spectra
 from .study.cases import Case as Case
 from .study.cases import all_cases as all_cases
 from .study.cases import cases_of_load as cases_of_load
+from .study.in_process import case_spectra as case_spectra
 from .study.in_process import identify_support as identify_support
 from .study.in_process import run_study as run_study
 from .study.in_process import simulate_case as simulate_case

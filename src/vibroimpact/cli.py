@@ -72,7 +72,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="vibroimpact",
         description="Vibration of tubes and other structures with gap supports. Studies are run"
-        " with snakemake or make; these commands check what they read.",
+        " with snakemake; these commands check what they read.",
     )
     parser.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
@@ -308,13 +308,20 @@ def _configuration(path: str) -> tuple[str | None, list[str]]:
 
 def _study(data: dict, path: str) -> tuple[str | None, list[str]]:
     """Return (what a study is, its problems). Raises ConfigError."""
+    from vibroimpact.config.problems import ConfigError
     from vibroimpact.config.reading import check_config
     from vibroimpact.study.cases import all_cases
 
-    config = check_config(data, path)
+    told: list[str] = []
+    try:
+        config = check_config(data, path)
+    except ConfigError as error:
+        if error.mended is None:
+            raise
+        config, told = error.mended, error.problems
     problems, warnings = _problems_of_model(config)
-    if problems:
-        return None, [f"{path}: {problem}" for problem in problems]
+    if told or problems:
+        return None, [*told, *(f"{path}: {problem}" for problem in problems)]
     aim = "with identification" if config.identification is not None else "without identification"
     return (
         f"study '{config.study}': structure of kind {config.structure.kind}{_named(config)},"
@@ -360,7 +367,7 @@ def _named(config) -> str:
 
 
 def _problems_of_model(config) -> tuple[list[str], list[str]]:
-    """Return (problems of the model and of the measured force of a study, warnings)."""
+    """Return (problems of the model and of the measured files of a study, warnings)."""
     from vibroimpact.study.model_checks import check_model
 
     found = check_model(config)
@@ -373,6 +380,14 @@ def _problems_of_model(config) -> tuple[list[str], list[str]]:
             read_force(force.file, force.variable, force.sampling_frequency_Hz)
         except ForceFileError as error:
             problems.append(str(error))
+    if config.overlay.campaign is not None:
+        from vibroimpact.campaign.file import CampaignError, checked_description
+        from vibroimpact.records import RecordError
+
+        try:
+            checked_description(config.overlay.campaign)
+        except (CampaignError, RecordError) as error:
+            problems += [f"overlay.campaign: {line}" for line in str(error).splitlines()]
     return problems, list(found.warnings)
 
 

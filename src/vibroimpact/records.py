@@ -5,6 +5,7 @@ import io
 import json
 import math
 import os
+import re
 import sys
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
@@ -32,6 +33,8 @@ MOST_PACKED = 1100  # deflate makes zeros 1032 times smaller
 MOST_READ, FLOAT_BYTES = 10**9, 8
 # Measured values are compressed ten times at most; a file that holds less was never filled.
 MOST_TIMES_SMALLER, SMALL_BYTES = 100, 10**8
+
+FORMULA = re.compile(r"'*[=+\-@\t\r].")  # how a cell begins that a spreadsheet computes
 
 # What to do with a file that cannot be read: with a result, and with one that a user gave.
 MAKE_AGAIN = "delete it and run again"
@@ -491,6 +494,9 @@ def write_table(rows: list[dict], path: str | Path, columns: tuple[str, ...] = (
 def write_cells(columns: Iterable[str], rows: Iterable, path: str | Path) -> None:
     """Write rows of plain Python values under a header as CSV, whole or not at all.
 
+    A text that a spreadsheet would take for a formula gets an apostrophe in front, which read_table
+    takes away.
+
     Raises RecordError where the folder cannot be written or is full.
     """
     with (
@@ -499,7 +505,7 @@ def write_cells(columns: Iterable[str], rows: Iterable, path: str | Path) -> Non
     ):
         writer = csv.writer(file)
         writer.writerow(columns)
-        writer.writerows(rows)
+        writer.writerows([_cell(value) for value in row] for row in rows)
 
 
 def write_text(text: str, path: str | Path) -> None:
@@ -548,7 +554,7 @@ def read_table(path: str | Path, texts: Iterable[str] = ()) -> list[dict[str, An
                 f"{path}: row {number} has {len(row)} values for {len(columns)} columns:"
                 f" {MAKE_AGAIN}"
             )
-    kinds = [str if column in texts else _number for column in columns]
+    kinds = [_text if column in texts else _number for column in columns]
     return [
         {column: kind(text) for column, kind, text in zip(columns, kinds, row, strict=True)}
         for row in rows
@@ -560,13 +566,24 @@ def _plain(value):
     return float(value) if isinstance(value, np.floating) else value
 
 
+def _cell(value):
+    """Return a value as it is written; as text, a formula would be computed by a spreadsheet."""
+    formula = isinstance(value, str) and FORMULA.match(value) and isinstance(_number(value), str)
+    return f"'{value}" if formula else value
+
+
+def _text(text):
+    """Return the text of a cell of _cell."""
+    return text[1:] if text.startswith("'") and FORMULA.match(text) else text
+
+
 def _number(text):
     for kind in (int, float):
         try:
             return kind(text)
         except ValueError:
             continue
-    return text
+    return _text(text)
 
 
 def plain_values(value: Any) -> Any:

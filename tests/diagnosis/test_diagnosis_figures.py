@@ -15,6 +15,7 @@ from vibroimpact.figures.diagnosis.place import place_figure
 from vibroimpact.figures.diagnosis.psd import chosen_channels as channels_of_psd
 from vibroimpact.figures.diagnosis.psd import chosen_records, psd_figure
 from vibroimpact.figures.diagnosis.sheets import diagnosis_figures
+from vibroimpact.figures.style import tidy_log_axes
 from vibroimpact.reports.discrepancy_page import discrepancy_page
 from vibroimpact.verdict.content import CONCLUSIONS, FoundEffect
 
@@ -164,6 +165,8 @@ def test_no_text_is_cut_or_covered(size):
     channels, records, supports = size
     evidence = made_up_evidence(channels, records, supports)
     sheets = diagnosis_figures(evidence, made_up_psd(channels, records), verdict_of())
+    for sheet in sheets:
+        tidy_log_axes(sheet.figure)
     faults = {
         sheet.name: layout_faults(sheet.figure)
         for sheet in sheets
@@ -266,6 +269,7 @@ def test_a_failed_free_run_does_not_stop_the_figure():
     psd = made_up_psd()
     psd["psd"].values[1:] = np.nan
     sheet = psd_figure(psd, verdict_of())
+    tidy_log_axes(sheet.figure)
     assert layout_faults(sheet.figure) == []
 
 

@@ -21,9 +21,9 @@ def nothing_installed(monkeypatch):
 @pytest.mark.parametrize(
     "judge, remedy",
     [
-        (judges_presence.opensees, "make judges"),
-        (judges_presence.sdypy_ema, "make judges"),
-        (judges_presence.pyoma2, "make judges"),
+        (judges_presence.opensees, "requirements-judges.lock"),
+        (judges_presence.sdypy_ema, "requirements-judges.lock"),
+        (judges_presence.pyoma2, "requirements-judges.lock"),
         (lambda: judges_presence.calculix(""), "apt-get"),
     ],
 )

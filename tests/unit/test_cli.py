@@ -66,6 +66,19 @@ def test_all_problems_of_a_study_are_printed(run, tmp_path):
     assert "unknown key 'overlp' in spectra" in errors and "grid.gap_m[0] = -1.0" in errors
 
 
+def test_a_wrong_key_hides_no_problem_of_the_model(run, tmp_path):
+    data = yaml.safe_load(STUDY.read_text())
+    data["spectra"]["overlp"] = 0.5
+    data["structure"]["theory"] = "timoshenk"
+    data["supports"][0]["stiffness_N_per_m"] = 1.0e12
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump(data))
+    code, output, errors = run("check", path)
+    assert (code, output) == (1, "")
+    for part in ("unknown key 'overlp'", "theory = 'timoshenk'", "contact stiffness 2e+11"):
+        assert part in errors
+
+
 @pytest.mark.parametrize(
     ("name", "content", "part"),
     [
@@ -85,6 +98,16 @@ def test_unreadable_file_is_reported_in_a_sentence(run, tmp_path, name, content,
     code, output, errors = run("check", path)
     assert (code, output) == (1, "")
     assert errors.startswith(f"{path}: ") and part in errors and "Traceback" not in errors
+
+
+def test_an_overlay_is_a_campaign(run, tmp_path):
+    data = yaml.safe_load(STUDY.read_text())
+    data["overlay"]["campaign"] = str(STUDY)
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump(data))
+    code, output, errors = run("check", path)
+    assert (code, output) == (1, "")
+    assert f"overlay.campaign: {STUDY}: can not be read as netCDF" in errors
 
 
 def test_a_folder_is_a_sentence(run, tmp_path):

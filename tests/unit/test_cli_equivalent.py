@@ -101,6 +101,26 @@ def test_a_wrong_call_is_a_sentence(run, arguments, part):
     assert (code, output) == (1, "") and part in errors and "Traceback" not in errors
 
 
+def test_a_misspelled_study_lists_those_there_are(run, tmp_path, monkeypatch, study_model):
+    monkeypatch.chdir(tmp_path)
+    case = ("--load", 4, "--gap", 1e-4)
+    assert "Run `snakemake -j2 --configfile FILE`" in run("mein", *case)[2]
+    for name in ("mine", "other"):
+        (tmp_path / "results" / name).mkdir(parents=True)
+        made_up_study(tmp_path / "results" / name, study_model)
+    assert "Did you mean mine? There are: mine, other" in run("mein", *case)[2]
+    assert "is there. There are: mine, other" in run("xyz", *case)[2]
+
+
+def test_a_gap_in_millimetres_is_recognised(run, study):
+    code, output, errors = run(study, "--load", 4, "--gap", 0.1)
+    assert (code, output) == (1, "")
+    assert "gaps are in metres, 0.1 mm is 0.0001" in errors
+    config = ROOT / "config" / "study.yaml"
+    errors = run("--estimate", "--config", config, "--load", 5, "--gap", 0.25)[2]
+    assert "gaps are in metres, 0.25 mm is 0.00025" in errors
+
+
 def test_an_unknown_format_and_a_missing_folder_are_sentences(run, study, tmp_path):
     case = (study, "--load", 4, "--gap", 1e-4)
     assert "format 'ansys' is none of nastran" in run(*case, "--export", "ansys", "x")[2]

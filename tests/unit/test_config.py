@@ -5,6 +5,7 @@ key is used.
 import ast
 import copy
 import datetime
+import math
 import re
 from pathlib import Path
 
@@ -453,12 +454,73 @@ def test_a_named_material_is_filled_in_and_can_be_overridden(study):
     assert check_config(study, "mine").structure.material == material
 
 
-def test_a_missing_key_and_a_missing_kind_are_named(study):
-    del study["structure"]["leg_length_m"]
-    del study["damping"]["kind"]
-    found = "\n".join(problems(study))
-    assert "structure.leg_length_m is missing" in found
-    assert "damping.kind is missing" in found
+def test_a_missing_key_is_described_by_itself(study):
+    del study["structure"]["leg_length_m"], study["grid"], study["excitation"]["kind"]
+    told = problems(study)
+    assert any("leg_length_m is missing: length of each leg" in each for each in told)
+    assert any("in m, such as 0.7" in each for each in told)
+    assert any("grid is missing" in each and "load_rms_N, gap_m, seeds" in each for each in told)
+    assert any("excitation.kind is missing: give one of band_limited" in each for each in told)
+
+
+HIDDEN = {  # a misspelled word -> mistakes that can be seen only where it is put right
+    ("structure.kind", "u_tub"): ("structure.legs", 1.0, "unknown key 'legs' in structure"),
+    ("excitation.kind", "band_limted"): ("excitation.point", "shakr", "did you mean 'shaker'?"),
+    ("supports.0.profile.kind", "circulr"): ("excitation.point", "shakr", "'shaker'?"),
+    ("integration.scheme", "exakt"): ("integration.steps_per_second", 100, "at least 4000"),
+    ("structure.theory", "timoshenk"): ("supports.0.at_m", [0.0, 0.0, 5.0], "off the tube"),
+}
+
+
+@pytest.mark.parametrize(("word", "mistake"), HIDDEN.items(), ids=lambda each: str(each[0]))
+def test_a_misspelled_word_hides_no_other_mistake(study, word, mistake):
+    put(study, *word)
+    place, value, sentence = mistake
+    put(study, place, value)
+    told = problems(study)
+    assert any(f"{word[0].replace('.0', '[0]')} = '{word[1]}' must be" in each for each in told)
+    assert any(sentence in each for each in told)
+
+
+def test_a_misspelled_word_alone_is_one_problem(study):
+    put(study, "structure.kind", "u_tub")
+    assert len(problems(study)) == 1
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "told"),
+    [
+        ("grid.gap_m", [math.nan], "grid.gap_m[0] = nan must be a finite number"),
+        ("grid.gap_m", [], "grid.gap_m = [] must not be empty"),
+        (
+            "seed",
+            1e19,
+            "seed = 1e+19 is too large a whole number: give at most 9223372036854775807",
+        ),
+        ("seed", 10**19, "seed = 10000000000000000000 must be <= 9.22337e+18: any whole number"),
+    ],
+)
+def test_a_wrong_value_is_one_problem_in_plain_words(study, place, value, told):
+    put(study, place, value)
+    assert problems(study) == [f"config/mine.yaml: {told}"]
+
+
+def test_a_table_of_one_point_is_told(study):
+    table = {"kind": "table", "frequency_Hz": [5.0], "psd_N2_per_m2_Hz": [0.01]}
+    study["excitation"] = {
+        "kind": "turbulence", "direction": [0.0, 1.0, 0.0], "correlation_length_m": 0.1,
+        "band_Hz": [5.0, 200.0], "spectrum": table,
+    }  # fmt: skip
+    told = problems(study)
+    assert any("frequency_Hz = [5.0] has too few values: give 2 or more" in each for each in told)
+
+
+def test_the_point_of_a_mass_is_told_with_its_place(study):
+    study["masses"] = [{"name": "a", "point": "apx", "mass_kg": 0.1}]
+    assert problems(study) == [
+        "config/mine.yaml: masses[0].point = 'apx' is not one of the named points: did you mean"
+        " 'apex'?"
+    ]
 
 
 def test_bend_along_its_own_tangent_is_refused(other_kinds):

@@ -146,7 +146,7 @@ def sheets(config, study, tmp_path_factory):
         part, model, rows
     )
     drawn += checks.energy_balance(part, found["records"]) + checks.contact_statistics(
-        part, found["records"]
+        part, model, found["records"]
     )
     for sheet in drawn:
         sheet.save(folder)

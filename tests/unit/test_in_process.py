@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+import yaml
 
 import vibroimpact
 from vibroimpact.identify.estimate import METHODS, Estimate
@@ -184,3 +185,22 @@ def test_a_model_is_built_once_for_the_same_keys(tube):
     lighter = vibroimpact.changed_config(tube, {"structure.material.density_kg_per_m3": 8000.0})
     assert in_process.reduced_model(louder) is model
     assert in_process.reduced_model(lighter) is not model
+
+
+def test_a_path_stands_for_its_configuration(tmp_path):
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump(CHAIN))
+    record = vibroimpact.simulate_case(path, load_rms_N=5.0, gap_m=1.0e-4)
+    again = vibroimpact.simulate_case(str(path), load_rms_N=5.0, gap_m=1.0e-4)
+    assert record.identical(again)
+
+
+def test_spectra_say_what_they_want(chain, record, tube):
+    with pytest.raises(vibroimpact.ConfigError, match="int is no configuration: give a Config"):
+        vibroimpact.simulate_case(3, load_rms_N=5.0, gap_m=1.0e-4)
+    with pytest.raises(vibroimpact.ConfigError, match="Dataset is no configuration"):
+        vibroimpact.case_spectra(record, tube)
+    with pytest.raises(ValueError, match="the record is of type Config: give that of simulate"):
+        vibroimpact.case_spectra(tube, tube)
+    with pytest.raises(ValueError, match="no time series of displacement: give that of"):
+        vibroimpact.case_spectra(tube, record.drop_vars("displacement"))

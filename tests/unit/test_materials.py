@@ -30,13 +30,31 @@ def test_names_of_the_configuration_are_those_of_the_tables():
         ("zircaloy_4", 26.85, 92.375, 1e-9),  # MATPRO at 300 K: 1.088e11 - 5.475e7 x 300
         ("inconel_600", 20.0, 214.0, 5e-3),  # ASME II-D gives 214 at room temperature
         ("inconel_600", 300.0, 199.77, 1e-4),  # 214.21 - 0.038654 T - 3.1636e-5 T²
-        ("inconel_690", 20.0, 211.0, 1e-12),
-        ("incoloy_800", 24.0, 28.5 * 6.894757, 1e-3),  # 28.5e3 ksi at 75 °F
+        ("inconel_600", 350.0, 195.0, 0.01),  # ASME II-D, TM-4, N06600
+        ("inconel_690", 25.0, 208.0, 1e-12),  # ASME II-D, TM-4, N06690
+        ("inconel_690", 350.0, 191.0, 1e-12),
+        ("inconel_690", 24.0, 211.0, 0.015),  # Special Metals, at room temperature
+        ("incoloy_800", 25.0, 196.0, 1e-12),  # ASME II-D, TM-4, N08800
+        ("incoloy_800", 350.0, 179.0, 1e-12),
+        ("incoloy_800", 24.0, 28.5 * 6.894757, 3e-3),  # Special Metals, 28.5e3 ksi at 75 °F
+        ("stainless_steel_304L", 350.0, 172.0, 1e-12),  # ASME II-D, TM-1, group G
+        ("stainless_steel_316L", 275.0, 177.5, 1e-12),  # between 179 and 176
+        ("stainless_steel_405", 350.0, 178.0, 1e-12),  # ASME II-D, TM-1, group F
+        ("stainless_steel_410", 25.0, 201.0, 1e-12),
+        ("stainless_steel_410", 20.0, 215.0, 0.07),  # EN 10088-1, 1.4006
+        ("titanium_grade_2", 20.0, 107.0, 1e-12),  # ASME II-D, TM-5, R50400
+        ("titanium_grade_2", 350.0, 84.0, 1e-12),
     ],
 )
 def test_moduli_are_the_printed_ones(name, temperature, modulus, tolerance):
     found = solid_properties(name, temperature).young_modulus_Pa
     assert found == pytest.approx(modulus * 1.0e9, rel=tolerance)
+
+
+@pytest.mark.parametrize("name", SOLIDS)
+def test_metals_are_known_from_room_to_operating_temperature(name):
+    cold, hot = (solid_properties(name, temperature) for temperature in (20.0, 350.0))
+    assert hot.young_modulus_Pa < cold.young_modulus_Pa
 
 
 def test_poissons_ratio_of_zircaloy_follows_both_moduli():

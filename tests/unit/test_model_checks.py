@@ -8,7 +8,9 @@ import pytest
 import yaml
 
 from vibroimpact.cli import main
-from vibroimpact.config.reading import check_config
+from vibroimpact.config.changed_keys import changed_config
+from vibroimpact.config.reading import ConfigError, check_config
+from vibroimpact.identify.case_estimates import standard_errors
 from vibroimpact.study.model_checks import check_model
 
 ROOT = Path(__file__).parents[2]
@@ -142,3 +144,46 @@ def test_check_names_the_file_of_a_negative_stiffness(tmp_path, capsys, reliabil
     assert main(["check", str(path)]) == 1
     assert f"{tmp_path / 'stiffness.npz'}: has a negative eigenvalue" in capsys.readouterr().err
     reliability.fault("matrices with a negative eigenvalue", "refused with file and frequency")
+
+
+@pytest.mark.parametrize(("duration", "told"), [(4.0, True), (10.0, True), (11.0, False)])
+def test_a_record_of_few_segments_is_a_warning(duration, told):
+    # Segments of 4 s; at 11 s a bin has 9 degrees of freedom, of which 8 are asked for.
+    found = check_model(check_config(smoke("record.duration_s", duration), "mine"))
+    words = f"record.duration_s = {duration:g} is"
+    assert found.problems == ()
+    assert any(words in each and "record 11 s" in each for each in found.warnings) == told
+
+
+UNSEEN = {  # what identifies nothing: changes -> the sentence that refuses it
+    "no supports": ({"supports": []}, "there are no supports: leave identification out"),
+    "on the clamp": ({"identification.response_point": "root"}, "'root' does not move along y"),
+    "one place": (
+        {"identification.lscf.references": ["bend_45", "shaker"]},
+        "references[1] = 'shaker' moves as the reference 'bend_45' does",
+    ),
+    "line across": ({"record.shape_line.direction": "x"}, "the force, along y, moves nothing"),
+    "undamped": ({"damping": {"kind": "modal", "other_ratio": 0.0}}, "have none"),
+    "one stop": (
+        {"supports.profile": {"kind": "planes", "normals_deg": [0.0]}},
+        "the force moves no contact point",
+    ),
+}
+
+
+@pytest.mark.parametrize(("changes", "words"), UNSEEN.values(), ids=UNSEEN)
+def test_what_can_not_be_identified_is_refused(changes, words):
+    data = smoke("points.root", [-0.30, 0.0, 0.0])
+    data["record"]["sensors"]["points"] = ["apex", "bend_45", "shaker", "root"]
+    config = check_config(data, "mine")
+    assert check_model(config).problems == ()
+    try:
+        problems = check_model(changed_config(config, changes)).problems
+    except ConfigError as error:
+        problems = error.problems
+    assert len(problems) == 1 and words in problems[0]
+
+
+def test_negative_variances_are_errors_without_end():
+    covariance = np.array([[4.0, 0.0, 0.0], [0.0, -1e-9, 0.0], [0.0, 0.0, np.nan]])
+    assert np.array_equal(standard_errors(covariance), [2.0, np.inf, np.nan], equal_nan=True)

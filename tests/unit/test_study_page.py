@@ -27,7 +27,7 @@ from vibroimpact.reports.captions import CATEGORIES, CaptionError, read_caption
 from vibroimpact.reports.equivalent_answer import Answer, Value
 from vibroimpact.reports.study_statistics import study_statistics
 from vibroimpact.reports.study_tables import Table, reason_table
-from vibroimpact.reports.study_words import contact_sentences, run_sentence
+from vibroimpact.reports.study_words import centred_sentence, contact_sentences, run_sentence
 from vibroimpact.study.cases import all_cases, case_from_id
 
 ROOT = Path(__file__).parents[2]
@@ -345,6 +345,14 @@ def test_what_was_run_is_said_with_its_units(study, changes, words):
     told = run_sentence(made_up_config(**changes), study.content.statistics)
     assert words in told and "2 gaps (radial, 0.2 and 0.05 mm)" in told
     assert told.startswith("A U-tube with 2 gap supports") and "12 records of 16 s" in told
+
+
+def test_wear_of_a_centred_tube_has_its_caveat():
+    told = centred_sentence(1e-6, np.zeros((10, 2)), 1e-4)
+    assert "centred to 1e-06 of the gap" in told and "supports.centre_offset_m" in told
+    assert centred_sentence(0.1, np.zeros((10, 2)), 1e-4) == ""
+    assert centred_sentence(1e-6, np.full((10, 2), 1e-5), 1e-4) == ""
+    assert centred_sentence(1e-6, np.zeros((0, 2)), 1e-4) == told
 
 
 def test_what_is_to_be_known_of_contact_is_said_with_its_case(study):

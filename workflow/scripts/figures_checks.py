@@ -18,7 +18,7 @@ sheets = [
     *equivalent.figure_13_equivalent_support(config, model, rows),
     *equivalent.collapse(config, model, rows),
     *checks.energy_balance(config, records),
-    *checks.contact_statistics(config, records),
+    *checks.contact_statistics(config, model, records),
 ]
 for sheet in sheets:
     sheet.save(Path(snakemake.output.figures[0]).parent)

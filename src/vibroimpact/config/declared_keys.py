@@ -12,7 +12,6 @@ from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
 from .measured_structure import MeasuredStructure
-from .problems import kind_of, members
 from .quantities import Length, Pattern, Range, Section, Unit
 from .schema import Config
 
@@ -91,7 +90,7 @@ def declared_measured_structure() -> DeclaredSection:
 
 def _sections(section: type[Section], place: str) -> Iterator[DeclaredSection]:
     """Yield a section, then those inside it."""
-    keys = tuple(_declared(name, field) for name, field in section.model_fields.items())
+    keys = tuple(declared(name, field) for name, field in section.model_fields.items())
     yield DeclaredSection(place, kind_of(section), meaning_of(section), keys)
     for key in keys:
         inside = place_of(place, key.name) + ("[]" if key.holds.startswith("list") else "")
@@ -130,10 +129,31 @@ def unit_of(name: str, field: FieldInfo) -> str:
     return "1"
 
 
-def _declared(name: str, field: FieldInfo) -> DeclaredKey:
+def members(annotation: Any) -> list:
+    """Return the classes found anywhere inside a type such as tuple[Annotated[A | B, ...], ...]."""
+    inner = [member for argument in get_args(annotation) for member in members(argument)]
+    return inner or [annotation]
+
+
+def sections_in(annotation: Any) -> tuple[type[Section], ...]:
+    """Return the sections that a value of a type consists of."""
+    return tuple(
+        member
+        for member in members(annotation)
+        if isinstance(member, type) and issubclass(member, Section)
+    )
+
+
+def kind_of(member: Any) -> str | None:
+    """Return the value of `kind` that selects a section among its alternatives, None without."""
+    field = getattr(member, "model_fields", {}).get("kind")
+    return get_args(field.annotation)[0] if field else None
+
+
+def declared(name: str, field: FieldInfo) -> DeclaredKey:
     """Return the DeclaredKey of a field."""
     annotation = _annotation(field)
-    sections = _inner_sections(annotation)
+    sections = sections_in(annotation)
     return DeclaredKey(
         name=name,
         holds=_in_words(annotation),
@@ -157,15 +177,6 @@ def _metadata(annotation: Any) -> list[Any]:
         inner, *own = get_args(annotation)
         return [*_metadata(inner), *own]
     return [each for argument in get_args(annotation) for each in _metadata(argument)]
-
-
-def _inner_sections(annotation: Any) -> tuple[type[Section], ...]:
-    """Return the sections that a value of a type consists of."""
-    return tuple(
-        member
-        for member in members(annotation)
-        if isinstance(member, type) and issubclass(member, Section)
-    )
 
 
 def _range(annotation: Any) -> str:

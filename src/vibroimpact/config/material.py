@@ -21,9 +21,14 @@ Metal = Literal[
     "inconel_690",
     "incoloy_800",
     "stainless_steel_304",
+    "stainless_steel_304L",
     "stainless_steel_316",
+    "stainless_steel_316L",
+    "stainless_steel_405",
+    "stainless_steel_410",
     "carbon_steel",
     "zircaloy_4",
+    "titanium_grade_2",
 ]
 ROOM_TEMPERATURE_C = 20.0
 OR_NAMED = "Null for that of the named metal."

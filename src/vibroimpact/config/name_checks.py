@@ -53,6 +53,7 @@ def known_points(
     record: RecordKeys,
     supports: Sequence[Support],
     elements: Sequence[LocalElement],
+    masses: Sequence[PointMass],
 ) -> Problems:
     """Yield a problem unless points that the configuration names are there."""
     names = names_of_points(structure, points)
@@ -68,10 +69,12 @@ def known_points(
             for key in ("point", "other_point")
             if getattr(entry, key) is not None
         ]
+    named += [(f"masses[{i}].point", mass.point) for i, mass in enumerate(masses)]
     for place, name in named:
         if name not in names:
             close = get_close_matches(name, names, n=1)
-            remedy = f"did you mean '{close[0]}'?" if close else f"known are {', '.join(names)}"
+            known = f"known are {', '.join(names)}" if names else "points is empty, add it there"
+            remedy = f"did you mean '{close[0]}'?" if close else known
             yield place, name, f"is not one of the named points: {remedy}"
 
 
@@ -113,9 +116,21 @@ def identified_points(record: RecordKeys, identification: Identification) -> Pro
 
 
 def identification_needs(
-    structure: Structure, excitation: Excitation, record: RecordKeys, identification: Identification
+    structure: Structure,
+    excitation: Excitation,
+    record: RecordKeys,
+    supports: Sequence[Support],
+    identification: Identification,
 ) -> Problems:
-    """Yield a problem unless what is identified is a tube under a broadband force."""
+    """Yield a problem unless what is identified are the supports of a tube under a broadband
+    force.
+    """
+    if not supports:
+        yield (
+            "identification",
+            "given",
+            "looks for the equivalent support, and there are no supports: leave identification out",
+        )
     if structure.kind not in TUBES:
         yield (
             "identification",

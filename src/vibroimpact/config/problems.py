@@ -5,10 +5,14 @@ and what to do.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from datetime import date
 from difflib import get_close_matches
-from typing import Any, get_args
+from typing import Any
 
+from pydantic.fields import FieldInfo
+
+from .declared_keys import declared, kind_of, members, sections_in
 from .quantities import NOT_GIVEN, Section
 from .schema import Config
 
@@ -27,7 +31,7 @@ PLAIN_WORDS = {
     "bool_type": "must be true or false",
     "bool_parsing": "must be true or false",
     "finite_number": "must be a finite number",
-    "too_short": "must not be empty",
+    "int_parsing_size": "is too large a whole number: give at most 9223372036854775807",
 }
 
 
@@ -35,11 +39,13 @@ class ConfigError(Exception):
     """A configuration that can not be used.
 
     problems: one sentence per problem; str() gives one line each.
+    mended: the configuration with its mistakes put right, where that leaves no doubt: for checks
+        that need a whole one.
     """
 
-    def __init__(self, problems: list[str]):
+    def __init__(self, problems: list[str], mended: Config | None = None):
         super().__init__("\n".join(problems))
-        self.problems = problems
+        self.problems, self.mended = problems, mended
 
 
 def sentence(error: Mapping[str, Any], data: Any, whole: type[Section] = Config) -> str:
@@ -47,15 +53,16 @@ def sentence(error: Mapping[str, Any], data: Any, whole: type[Section] = Config)
 
     whole: the section that it states.
     """
-    path, known, value = _resolve(error["loc"], data, whole)
+    found = _resolve(error["loc"], data, whole)
+    path, value = found.path, found.value
     place = _place(path)
     if error["type"] == UNKNOWN:
-        close = get_close_matches(str(error["loc"][-1]), known, n=1)
-        remedy = f"did you mean '{close[0]}'?" if close else f"known are {', '.join(known)}"
+        close = get_close_matches(str(error["loc"][-1]), found.keys, n=1)
+        remedy = f"did you mean '{close[0]}'?" if close else f"known are {', '.join(found.keys)}"
         parent = _place(path[:-1])
         return f"unknown key '{error['loc'][-1]}'{f' in {parent}' if parent else ''}: {remedy}"
     if error["type"] == "missing":
-        return f"{place} is missing: config/study.yaml shows it with its unit"
+        return f"{place} is missing: {_wanted(str(path[-1]), found.keys[path[-1]])}"
     if error["type"] == "invalid_key":
         return (
             f"the key {shown(error['loc'][-1])} of {_place(path[:-1]) or 'the file'} must be a text"
@@ -63,11 +70,16 @@ def sentence(error: Mapping[str, Any], data: Any, whole: type[Section] = Config)
     if error["type"] == NOT_GIVEN:
         return f"{place} {error['msg']}"
     if error["type"] == "union_tag_not_found":
-        return f"{place}.kind is missing: config/study.yaml shows the block with its kind"
+        return f"{place}.kind is missing: give one of {_kinds(found.sections)}"
     if error["type"] == "union_tag_invalid":
         return (
             f"{place}.kind = {shown(error['ctx']['tag'])} must be one of"
             f" {error['ctx']['expected_tags']}"
+        )
+    if error["type"] == "too_short":
+        least = error["ctx"]["min_length"]
+        return f"{place} = {shown(value)} " + (
+            "must not be empty" if least == 1 else f"has too few values: give {least} or more"
         )
     text = PLAIN_WORDS.get(error["type"]) or error["msg"].replace("Input should be", "must be")
     if "[key]" in error["loc"]:
@@ -82,9 +94,28 @@ def shown(value: Any) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
+def _wanted(name: str, field: FieldInfo) -> str:
+    """Return what a key that is missing is, and a value that it could have."""
+    key = declared(name, field)
+    meaning = key.meaning.split(". ")[0].rstrip(".")
+    if meaning[1:2].islower():
+        meaning = meaning[0].lower() + meaning[1:]
+    if len(key.sections) > 1 and not key.example:
+        return f"{meaning} (block of keys, kind one of {_kinds(key.sections)})"
+    if key.sections and not key.example:
+        return f"{meaning} (block of keys: {', '.join(key.sections[0].model_fields)})"
+    unit = f" in {key.unit}" if key.unit not in ("", "1") else ""
+    return f"{meaning} ({key.holds}{unit}, such as {key.example})"
+
+
+def _kinds(sections: tuple[type[Section], ...]) -> str:
+    """Return the kinds of alternative sections, such as "path, chain"."""
+    return ", ".join(kind for section in sections if (kind := kind_of(section)))
+
+
 def path_in(location: tuple, data: Any) -> list:
     """Return the path of keys and indices that a pydantic location means in `data`."""
-    return _resolve(location, data)[0]
+    return _resolve(location, data).path
 
 
 def _place(path: list) -> str:
@@ -94,11 +125,23 @@ def _place(path: list) -> str:
     ).removeprefix(".")
 
 
-def _resolve(
-    location: tuple, data: Any, whole: type[Section] = Config
-) -> tuple[list, list[str], Any]:
-    """Return (path of keys and indices, keys known beside its last part, value) for a pydantic
-    location in `data`.
+@dataclass(frozen=True)
+class _Place:
+    """A place of a configuration.
+
+    path: keys and indices. value: what is there, None where nothing is.
+    keys: {name: field} of those known beside the last part of the path.
+    sections: that the value can be, or consists of.
+    """
+
+    path: list
+    value: Any
+    keys: Mapping[str, FieldInfo]
+    sections: tuple[type[Section], ...]
+
+
+def _resolve(location: tuple, data: Any, whole: type[Section] = Config) -> _Place:
+    """Return the place that a pydantic location means in `data`.
 
     Pydantic's location also names the member of a union. Such a part is no key of the data and is
     left out of the path.
@@ -106,7 +149,7 @@ def _resolve(
     model: type[Section] | None = whole
     annotation: Any = None
     path: list = []
-    known = list(whole.model_fields)
+    keys: Mapping[str, FieldInfo] = whole.model_fields
     for index, part in enumerate(location):
         in_data = (isinstance(data, dict) and part in data) or (
             isinstance(data, (list, tuple)) and isinstance(part, int) and part < len(data)
@@ -117,31 +160,13 @@ def _resolve(
             or (not in_data and part in ("one", "list"))
         ):
             annotation = next((m for m in members(annotation) if kind_of(m) == part), annotation)
-            model = annotation if _is_section(annotation) else model
+            model = annotation if annotation in sections_in(annotation) else model
             continue
-        known = list(model.model_fields) if model is not None else []
+        keys = model.model_fields if model is not None else {}
         data = data[part] if in_data else None
         path.append(part)
         if isinstance(part, str):
-            fields = model.model_fields if model is not None else {}
-            annotation = fields[part].annotation if part in fields else None
-        sections = [member for member in members(annotation) if _is_section(member)]
+            annotation = keys[part].annotation if part in keys else None
+        sections = sections_in(annotation)
         model = sections[0] if len(sections) == 1 else None
-    return path, known, data
-
-
-def members(annotation: Any) -> list:
-    """Return the classes found anywhere inside a type such as tuple[Annotated[A | B, ...], ...]."""
-    inner = [member for argument in get_args(annotation) for member in members(argument)]
-    return inner or [annotation]
-
-
-def kind_of(member: Any) -> str | None:
-    """Return the value of `kind` that selects a section among its alternatives, None without."""
-    field = getattr(member, "model_fields", {}).get("kind")
-    return get_args(field.annotation)[0] if field else None
-
-
-def _is_section(member: Any) -> bool:
-    """Whether a member of a type is a block of keys."""
-    return isinstance(member, type) and issubclass(member, Section)
+    return _Place(path, data, keys, sections_in(annotation))

@@ -6,7 +6,9 @@ from __future__ import annotations
 
 import copy
 import os
+import re
 from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
 from typing import Annotated, Any
 
 from pydantic import TypeAdapter, ValidationError
@@ -29,29 +31,44 @@ def load_config(path: str | os.PathLike[str], overrides: Mapping[str, Any] | Non
     return check_config({**read_yaml(path), **(overrides or {})}, str(path))
 
 
+def config_of(config: Config | str | os.PathLike[str]) -> Config:
+    """Return a configuration as it is given, or that of a YAML file.
+
+    Raises ConfigError as load_config does, and for what is neither.
+    """
+    if isinstance(config, (str, os.PathLike)):
+        return load_config(config)
+    if not hasattr(config, "structure"):
+        raise ConfigError(
+            [f"{type(config).__name__} is no configuration: give a Config, or the path of a file"]
+        )
+    return config
+
+
 def check_config(data: dict[str, Any], source: str) -> Config:
     """Return the Config of a mapping as YAML gives it.
 
     source: what the mapping was read from; it begins every sentence.
     Raises ConfigError with every problem.
     """
-    problems = []
-    config = None
-    try:
-        config = Config.model_validate(data)
-        sections = {name: getattr(config, name) for name in Config.model_fields}
-    except ValidationError as error:
-        errors = error.errors(include_url=False)
-        problems = [sentence(each, data) for each in errors]
-        sections = _valid_sections(
-            _without_unknown_keys(data, errors),
-            {each["loc"][0] for each in errors if each["type"] != UNKNOWN},
-        )
-    problems += [
-        f"{place} = {shown(value)} {text}" for place, value, text in cross_problems(sections)
-    ]
+    problems: list[str] = []
+    mended: dict[str, Any] | None = data
+    while mended is not None:  # once more where a mistake has hidden others
+        read, errors = mended, []
+        config = None
+        try:
+            config = Config.model_validate(read)
+            sections = {name: getattr(config, name) for name in Config.model_fields}
+        except ValidationError as error:
+            errors = [each for each in error.errors(include_url=False) if not _follows(each)]
+            sections = _valid_sections(read, {each["loc"][0] for each in errors})
+        problems += [sentence(each, read) for each in errors]
+        mended = _mended(read, errors)
+    between = cross_problems(sections)
+    problems += [f"{place} = {shown(value)} {text}" for place, value, text in between]
     if problems or config is None:
-        raise ConfigError([f"{source}: {problem}" for problem in dict.fromkeys(problems)])
+        told = [f"{source}: {problem}" for problem in dict.fromkeys(problems)]
+        raise ConfigError(told, None if between else config)
     return config
 
 
@@ -68,19 +85,34 @@ def _valid_sections(data: dict[str, Any], invalid: set) -> dict[str, Any]:
     return sections
 
 
-def _without_unknown_keys(data: dict[str, Any], errors: Sequence[Mapping[str, Any]]) -> dict:
-    """Return a copy of the mapping without the keys that are not declared, so that the rest can be
-    checked.
+def _follows(error: Mapping[str, Any]) -> bool:
+    """Whether an error says no more than another one: a list that is too short without the values
+    that are wrong.
     """
-    known = copy.deepcopy(data)
+    return error["type"] == "too_short" and len(error["input"]) >= error["ctx"]["min_length"]
+
+
+def _mended(data: dict[str, Any], errors: Sequence[Mapping[str, Any]]) -> dict[str, Any] | None:
+    """Return a copy of the mapping without undeclared keys and with misspelled words put right, so
+    that the rest can be checked; None where there is nothing of the kind.
+    """
+    copied, mended = copy.deepcopy(data), False
     for error in errors:
+        path, words = path_in(error["loc"], data), error.get("ctx", {})
+        if error["type"] == "union_tag_invalid":
+            path.append("kind")
+        level: Any = copied
+        for part in path[:-1]:
+            level = level[part]
         if error["type"] == UNKNOWN:
-            *path, last = path_in(error["loc"], data)
-            level = known
-            for part in path:
-                level = level[part]
-            level.pop(last, None)
-    return known
+            level.pop(path[-1], None)
+            mended = True
+            continue
+        known = re.findall("'([^']*)'", words.get("expected_tags") or words.get("expected") or "")
+        given = level[path[-1]] if known else None
+        if isinstance(given, str) and (meant := get_close_matches(given, known, 1)):
+            level[path[-1]], mended = meant[0], True
+    return copied if mended else None
 
 
 def _annotation(field: FieldInfo) -> Any:

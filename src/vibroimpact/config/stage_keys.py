@@ -102,6 +102,7 @@ STAGE_KEYS: dict[str, tuple[str, ...]] = {
     ),
     "figures_checks": (
         "structure.section",
+        "integration.imperfection",
         "integration.scheme",
         "integration.steps_per_second",
         "record.stress_limit_Pa",

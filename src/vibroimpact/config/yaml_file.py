@@ -66,7 +66,7 @@ def read_yaml(path: str | os.PathLike[str]) -> dict[str, Any]:
     """
     data = _parsed(path, _text(path, _content(path)))
     if not isinstance(data, dict):
-        raise ConfigError([f"{path}: holds no keys: start from a copy of config/study.yaml"])
+        raise ConfigError([f"{path}: holds no keys: write each as `key: value`"])
     if TEMPLATES in data:
         raise ConfigError(
             [f"{path}: {TEMPLATES} would run what the file holds as a program: remove the key"]
@@ -85,16 +85,13 @@ def _content(path: str | os.PathLike[str]) -> bytes:
             raw = file.read(MOST_BYTES + 1)
     except OSError as error:
         raise ConfigError(
-            [
-                f"{path}: cannot be read ({error.strerror}): give the path of a configuration, such"
-                " as config/study.yaml"
-            ]
+            [f"{path}: cannot be read ({error.strerror}): give the path of a text file in YAML"]
         ) from error
     if len(raw) > MOST_BYTES:
         raise ConfigError(
             [
                 f"{path}: is larger than {MOST_BYTES // 10**6} MB, which no configuration is: give"
-                " the path of a configuration, such as config/study.yaml"
+                " the path of a text file in YAML"
             ]
         )
     return raw
@@ -109,8 +106,8 @@ def _text(path: str | os.PathLike[str], raw: bytes) -> str:
     if b"\0" in raw:
         raise ConfigError(
             [
-                f"{path}: is a binary file or no text in UTF-8: give a configuration as text in"
-                " UTF-8, such as config/study.yaml"
+                f"{path}: is a binary file or no text in UTF-8: give a text file in YAML, saved as"
+                " UTF-8"
             ]
         )
     try:

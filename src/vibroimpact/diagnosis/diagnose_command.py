@@ -48,20 +48,22 @@ def run(options: argparse.Namespace) -> int:
 
     from .diagnose import run_diagnosis, write_diagnosis
     from .identified.structure_file import model_of, values_of
+    from .progress import ProgressBar
 
     if not os.path.isfile(options.campaign):
         print(f"{options.campaign}: there is no such file", file=sys.stderr)
         return 1
     try:
         model = model_of(options.model)
-        found = run_diagnosis(
-            options.campaign,
-            model,
-            options.effort,
-            threads=os.cpu_count() or 1,
-            provenance=verdict_origin(values_of(model), options.campaign, None),
-            log=lambda text: print(text, file=sys.stderr, flush=True),
-        )
+        with ProgressBar(sys.stderr, 1 + EFFORTS.index(options.effort)) as bar:
+            found = run_diagnosis(
+                options.campaign,
+                model,
+                options.effort,
+                threads=os.cpu_count() or 1,
+                provenance=verdict_origin(values_of(model), options.campaign, None),
+                log=bar,
+            )
         if options.folder:
             Path(options.folder).mkdir(parents=True, exist_ok=True)
             write_diagnosis(found, options.folder)

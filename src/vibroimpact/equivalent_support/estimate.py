@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 
+from vibroimpact.config.reading import config_of
 from vibroimpact.config.schema import Config
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.reduction.reduced_model import build_model
@@ -12,20 +15,24 @@ from .answer import Answer, EquivalentError, GroupAnswer, Span
 from .displacement_law import held_tube
 from .homogeneity import effects_with_a_scale
 from .law_file import ShippedLaw, shipped_law
+from .missing_case import require_metres
 from .support_directions import driven_word
 
 
-def estimate_equivalent(config: Config, load_rms_N: float, gap_m: float) -> Answer:
+def estimate_equivalent(config: Config | str | Path, load_rms_N: float, gap_m: float) -> Answer:
     """Return the Answer that the law of the default study estimates, without a simulation.
 
     The law was compared with simulations of other tubes. The values are the law times the median
     ratio found there; at least 80 % of the ratios are inside the interval. All supports have the
     same k and c.
 
+    config: a Config, or the path of a file.
     load_rms_N: RMS of the force in N. gap_m: radial gap in m.
 
     Raises EquivalentError for a configuration or a level that the law was not made for.
     """
+    config = config_of(config)
+    require_metres(gap_m, config.grid.gap_m)
     model = build_model(config, motion_only=True)
     shipped = shipped_law()
     if config.excitation.kind != "band_limited":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,44 @@ import numpy as np
 
 from vibroimpact.config.problems import ConfigError
 from vibroimpact.config.yaml_file import read_yaml
+
+from .answer import EquivalentError
+
+MM = 1.0e-3  # m
+OTHER_UNIT = 10.0  # times a known gap: no gap of the same structure
+
+
+def require_metres(gap_m: float, gaps_m: Sequence[float]) -> None:
+    """Raise EquivalentError for a gap that is like those of a structure in mm, and far above them
+    in m.
+
+    gaps_m: those of the study or of the configuration, m.
+    """
+    low, high = min(gaps_m) / OTHER_UNIT, max(gaps_m) * OTHER_UNIT
+    if gap_m > high and low <= gap_m * MM <= high:
+        raise EquivalentError(
+            f"the gap is {gap_m:g} m where those of the grid are {min(gaps_m):g} to"
+            f" {max(gaps_m):g} m: gaps are in metres, {gap_m:g} mm is {gap_m * MM:g}"
+        )
+
+
+def no_study_sentence(study: str | Path, tables: Sequence[Path]) -> str:
+    """Return the sentence for a study that is not there: those there are, or how to make one.
+
+    tables: where one of its tables was looked for; the last one below results/.
+    """
+    places = " nor ".join(map(str, tables))
+    sentence = f"'{study}' is no finished study: neither {places} is there. "
+    table = tables[-1]
+    there = sorted(path.parent.name for path in table.parents[1].glob(f"*/{table.name}"))
+    if not there:
+        return sentence + (
+            "Run `snakemake -j2 --configfile FILE` with an identification, or name another folder"
+        )
+    meant = get_close_matches(str(study), there, 1)
+    return sentence + (
+        f"{f'Did you mean {meant[0]}? ' if meant else ''}There are: {', '.join(there)}"
+    )
 
 
 def outside_sentence(

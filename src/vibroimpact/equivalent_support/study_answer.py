@@ -18,7 +18,7 @@ from vibroimpact.reduction.model_file import read_model
 from .answer import NOT_MOVED, Answer, EquivalentError, GroupAnswer, MethodAnswer, Span
 from .homogeneity import effects_with_a_scale
 from .interpolation import SAME, Reading, ranges_of_agreement, read_at
-from .missing_case import outside_sentence
+from .missing_case import no_study_sentence, outside_sentence, require_metres
 from .study_tables import SUMMARY, recommended_rows_of, summary_rows_of
 from .support_directions import driven_word
 
@@ -49,6 +49,7 @@ def equivalent(
     direction = driven_word(model)
     summary = summary_rows_of(folder, direction)
     recommended = recommended_rows_of(folder, summary, direction)
+    require_metres(gap_m, [row["gap_m"] for row in recommended])
     effects = effects_with_a_scale(model)
     level_of: Callable[[dict[str, Any]], float]
     if effects:
@@ -115,14 +116,11 @@ def study_folder(study: str | Path) -> Path:
 
     study: the folder, or its name under results/. Raises EquivalentError.
     """
-    for folder in (Path(study), Path("results") / study):
+    folders = (Path(study), Path("results") / study)
+    for folder in folders:
         if os.path.isfile(folder / SUMMARY):
             return folder.resolve() if folder.name in ("", ".", "..") else folder
-    raise EquivalentError(
-        f"'{study}' is no finished study: neither {Path(study) / SUMMARY} nor"
-        f" {Path('results') / study / SUMMARY} is there. Run `make study CONFIG=FILE` with an"
-        " identification, or name another folder"
-    )
+    raise EquivalentError(no_study_sentence(study, [folder / SUMMARY for folder in folders]))
 
 
 def model_of(folder: Path) -> ModalModel:

@@ -8,6 +8,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Annotation
 
+from .style import tidy_log_axes
+
 CLEAR_PX = 2.0  # between two labels, at the resolution of the figure
 
 
@@ -22,6 +24,7 @@ def spread_labels(figure: Figure, labels: Sequence[Annotation]) -> None:
         return
     if not hasattr(figure.canvas, "get_renderer"):
         FigureCanvasAgg(figure)
+    tidy_log_axes(figure)
     figure.canvas.draw()
     renderer = figure.canvas.get_renderer()  # type: ignore[attr-defined]
     boxes = {label: label.get_window_extent(renderer) for label in labels}

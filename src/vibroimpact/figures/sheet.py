@@ -22,7 +22,7 @@ from vibroimpact.display_units import display_unit
 from vibroimpact.records import write_cells, write_text
 from vibroimpact.whole_file import whole_file
 
-from .style import label_of, shown, tidy_log_axis
+from .style import label_of, shown, tidy_log_axes
 
 Column = tuple[str, ArrayLike]  # name of a column, values (point,) in SI
 DIGITS = 7  # significant digits in the CSV
@@ -222,13 +222,7 @@ class Sheet:
         The folder is created where it is missing.
         """
         folder = Path(folder)
-        for axis in (
-            axis
-            for axes in self.figure.axes
-            for axis in (axes.xaxis, axes.yaxis)
-            if axis.get_scale() == "log"
-        ):
-            tidy_log_axis(axis)
+        tidy_log_axes(self.figure)
         # The canvases are called directly: savefig would draw each file twice, and place the axes
         # again for the second one.
         self.figure.set_dpi(PNG_DPI)

@@ -14,6 +14,7 @@ import matplotlib
 import numpy as np
 from matplotlib.axis import Axis
 from matplotlib.colors import ListedColormap, LogNorm, to_hex
+from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 from numpy.typing import ArrayLike
 
@@ -31,6 +32,7 @@ BROWN, GREY, PALE = "#8C5A1E", "#7F7F7F", "#D9D9D9"
 PARAMETERS: dict[Any, Any] = {
     "figure.constrained_layout.w_pad": 0.06,
     "figure.constrained_layout.h_pad": 0.06,
+    "text.parse_math": False,  # a name may hold a $
     "font.size": 9.5,
     "axes.titlesize": 9.5,
     "axes.labelsize": 9.5,
@@ -117,6 +119,14 @@ def power_of_ten(power: int) -> str:
     It is drawn faster than mathematical text.
     """
     return "10" + str(power).translate(RAISED)
+
+
+def tidy_log_axes(figure: Figure) -> None:
+    """Give the logarithmic axes of a figure their ticks, before it is drawn."""
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            if axis.get_scale() == "log":
+                tidy_log_axis(axis)
 
 
 def tidy_log_axis(axis: Axis) -> None:

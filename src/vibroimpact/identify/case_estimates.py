@@ -40,6 +40,12 @@ LOWEST_CORRELATION = 0.8
 C_AT_EDGE = "c is at the edge of the family: with less, a mode of the linear tube would be unstable"
 
 
+def standard_errors(covariance: np.ndarray) -> np.ndarray:
+    """Return (parameter,) standard errors, infinite where round-off left a negative variance."""
+    variance = np.diag(covariance)
+    return np.sqrt(np.where(variance < 0.0, np.inf, variance))
+
+
 def estimate_from_pole(
     method: str, fit: PeakFit | OperationalPole | None, tube: ReferenceTube
 ) -> Estimate:
@@ -47,7 +53,7 @@ def estimate_from_pole(
     if fit is None:
         return unresolved(method, "no resonance could be fitted to the main peak")
     support = equivalent_support(tube.modes, fit.frequency, fit.damping_ratio)
-    errors = np.sqrt(np.diag(support.jacobian @ fit.covariance @ support.jacobian.T))
+    errors = standard_errors(support.jacobian @ fit.covariance @ support.jacobian.T)
     estimate = Estimate(
         method=method,
         k=support.k,
@@ -114,7 +120,7 @@ def estimate_from_broadband(fit: BroadbandFit | None, tube: ReferenceTube) -> Es
     frequency = tube.first_frequency(fit.k)
     ratio = tube.first_damping_ratio(fit.k) + fit.c * tube.damping_ratio_slope(fit.k)
     model_error = FREQUENCY_ERROR * fit.k / tube.frequency_slope(fit.k)
-    errors = np.sqrt(np.diag(fit.covariance))
+    errors = standard_errors(fit.covariance)
     estimate = Estimate(
         "broadband", fit.k, float(errors[0]), fit.c, float(errors[1]), frequency, ratio
     )

@@ -6,11 +6,13 @@ files.
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import xarray as xr
 
 from vibroimpact.config.changed_keys import changed_config
+from vibroimpact.config.reading import config_of
 from vibroimpact.config.schema import Config
 from vibroimpact.config.stage_keys import stage_params
 from vibroimpact.identify.estimate import table_rows
@@ -21,17 +23,18 @@ from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.reduction.reduced_model import build_model
 
 from .agreement_dataset import consistency_dataset
-from .case_spectra import case_spectra
+from .case_spectra import case_spectra as spectra_of
 from .cases import Case, all_cases
 from .method_agreement import consistency_rows, summary_rows
 from .simulation import simulate_cases
 from .support_estimates import SupportEstimates
 
 MODELS = Memo()
+SERIES = ("displacement", "acceleration", "line_displacement")  # that spectra are made of
 
 
 def simulate_case(
-    config: Config,
+    config: Config | str | Path,
     load_rms_N: float,
     gap_m: float,
     seed: int = 0,
@@ -42,6 +45,7 @@ def simulate_case(
     Its variables, dimensions and units are those of study.record_variables.VARIABLES. The grid of
     the configuration is not read.
 
+    config: a Config, or the path of a file.
     load_rms_N: RMS of the force, N.
     gap_m: radial clearance of the supports without one of their own, m.
     seed: of the force and the imperfections, from 0.
@@ -61,36 +65,59 @@ def simulate_case(
     return record
 
 
+def case_spectra(config: Config | str | Path, record: xr.Dataset) -> xr.Dataset:
+    """Return the averaged spectra of one case, with the attributes of its record.
+
+    Its psd_displacement_mean (sensor, frequency) is in m²/Hz, psd_acceleration_mean in (m/s²)²/Hz.
+
+    config: a Config, or the path of a file.
+    record: of simulate_case: displacement (sensor, time) m, acceleration (sensor, time) m/s² and
+        line_displacement (line_point, time) m.
+    Raises ValueError for a record without time series or of another shape, ConfigError.
+    """
+    config = config_of(config)
+    if not isinstance(record, xr.Dataset):
+        raise ValueError(
+            f"the record is of type {type(record).__name__}: give that of simulate_case, an xarray"
+            " Dataset, as in case_spectra(config, record)"
+        )
+    missing = [name for name in SERIES if name not in record]
+    if missing:
+        raise ValueError(
+            f"the record of {record.attrs.get('case', 'this case')} holds no time series of"
+            f" {', '.join(missing)}: give that of simulate_case, or take the spectra in"
+            " results/<study>/spectra"
+        )
+    return spectra_of(config, record)
+
+
 def identify_support(
-    config: Config, record: xr.Dataset, spectra: xr.Dataset | None = None
+    config: Config | str | Path, record: xr.Dataset, spectra: xr.Dataset | None = None
 ) -> SupportEstimates:
     """Return the equivalent support of one case by every method: k (N/m) and c (N s/m) per support.
 
     They are NaN where a method can not resolve the support.
 
+    config: a Config, or the path of a file.
     record: of simulate_case, or read from results/<study>/records.
     spectra: of case_spectra, or read from results/<study>/spectra; made from the record where None.
     Raises ValueError for a configuration without identification, and for a record without time
     series where the spectra are not given.
     """
+    config = config_of(config)
     if config.identification is None:
         raise ValueError(
             f"study '{config.study}' has no section identification, which says where to look for"
-            " the equivalent support: add it, as in config/study.yaml"
+            " the equivalent support: add it; `vibroimpact reference` lists its keys"
         )
     if spectra is None:
-        if "displacement" not in record:
-            raise ValueError(
-                f"the record of {record.attrs.get('case', 'this case')} holds no time series: give"
-                " its spectra, from results/<study>/spectra"
-            )
         spectra = case_spectra(config, record)
     estimates, curves = identify_case(config, reduced_model(config), record, spectra)
     case = record.attrs
     return SupportEstimates(case["load_rms_N"], case["gap_m"], tuple(estimates), curves)
 
 
-def run_study(config: Config) -> xr.Dataset:
+def run_study(config: Config | str | Path) -> xr.Dataset:
     """Return the equivalent supports of all cases of a study, as in its file consistency.nc.
 
     Variables: of every case (support_direction, gap, load, seed, method), of the medians over seeds
@@ -98,14 +125,16 @@ def run_study(config: Config) -> xr.Dataset:
     (support_direction, gap, load). Meant for small grids: the workflow runs large ones in parallel
     and keeps their records.
 
+    config: a Config, or the path of a file.
     Raises ValueError for a configuration without identification, and as simulate_case does.
     """
+    config = config_of(config)
     model, tables = reduced_model(config), []
     cases = all_cases(config.grid)
     if config.identification is None:
         raise ValueError(f"study '{config.study}' has no section identification: add it")
     for _, record in simulate_cases(config, model, cases):
-        estimates, _ = identify_case(config, model, record, case_spectra(config, record))
+        estimates, _ = identify_case(config, model, record, spectra_of(config, record))
         tables.append(table_rows(estimates, record.attrs))
     rows = consistency_rows(tables)
     return consistency_dataset(rows, summary_rows(rows))

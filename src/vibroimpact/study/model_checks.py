@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import combinations, count
+
+import numpy as np
 
 from vibroimpact.config.problems import shown
 from vibroimpact.config.schema import Basis, Config
+from vibroimpact.identify.guards import FEWEST_AVERAGES, few_averages
 from vibroimpact.integration.contact_convergence import IntegrationError, checked_contraction
 from vibroimpact.integration.step_stability import require_stable_step
+from vibroimpact.linear.support_groups import reached_supports
+from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.reduction.model_accuracy import (
     ModelAccuracyError,
     mesh_warnings,
@@ -21,9 +29,11 @@ from vibroimpact.reduction.reduced_model import (
     full_structure,
     keeps_all_modes,
 )
+from vibroimpact.spectra.welch import driven_axis, effective_averages
 
 # A larger structure takes minutes to reduce: its job says what is wrong with it.
 MOST_DOFS = 3000
+STILL = 1.0e-9  # of the largest motion of a sensor: none
 
 
 @dataclass(frozen=True)
@@ -55,6 +65,7 @@ def check_model(config: Config) -> ModelChecks:
             f" tube does up to {MAX_FULL_DOFS}: leave basis out, or reduce the matrices"
         )
     problems += [*without_effect(model, config.excitation), *runaway(model)]
+    problems += unseen(config, model)
     try:
         checked_contraction(model, step.steps_per_second, step.scheme)
         require_stable_step(model, step.steps_per_second, step.scheme)
@@ -64,4 +75,73 @@ def check_model(config: Config) -> ModelChecks:
         return ModelChecks((*problems, str(error)))
     condensed = getattr(structure, "condensed", None)
     told = [] if condensed is None else [f"structure.mass: {condensed.told()}"]
-    return ModelChecks(tuple(problems), (*told, *mesh_warnings(accuracy)))
+    warnings = (*told, *short_record(config), *mesh_warnings(accuracy))
+    return ModelChecks(tuple(problems), warnings)
+
+
+def unseen(config: Config, model: ModalModel) -> Iterator[str]:
+    """Yield why nothing can be identified: the force moves no support, a mode is undamped, a point
+    or the shape line does not move, or two references are at one place.
+    """
+    wanted = config.identification
+    if wanted is None or not hasattr(config.excitation, "direction"):
+        return
+    try:
+        _, modes = reached_supports(model, wanted.groups)
+    except ValueError as error:
+        yield f"identification: {error}: leave it out, or let the force act across a support"
+        return
+    undamped = modes[(model.damping[modes] == 0.0) & (model.omega[modes] > 0.0)]
+    if undamped.size:
+        yield (
+            f"damping: {undamped.size} of {modes.size} modes that the force moves have none, the"
+            f" first at {model.omega[undamped[0]] / (2.0 * np.pi):.4g} Hz: without contact they"
+            " grow without bound, and there is no linear tube to compare with: give ratios above 0"
+        )
+    axis, line = driven_axis(config.excitation.direction), config.record.shape_line.direction
+    shapes = {
+        name: model.sensor_shapes[modes, index] for index, name in enumerate(model.sensor_names)
+    }
+    least = STILL * max(np.abs(shape).max() for shape in shapes.values())
+    if np.abs(model.line_shapes[modes]).max() <= least:
+        yield (
+            f"record.shape_line.direction = '{line}': the force, along {axis}, moves nothing along"
+            f" it: give {axis}"
+        )
+    references = {f"lscf.references[{i}]": name for i, name in enumerate(wanted.lscf.references)}
+    places = {"response_point": wanted.response_point, "broadband.point": wanted.broadband.point}
+    for place, point in (places | references).items():
+        if np.abs(shapes[f"{point}.{axis}"]).max() <= least:
+            yield (
+                f"identification.{place} = '{point}' does not move along {axis}, the direction of"
+                " the force: give a point that does"
+            )
+    for (_, one), (place, other) in combinations(references.items(), 2):
+        apart = np.abs(shapes[f"{one}.{axis}"] - shapes[f"{other}.{axis}"]).max()
+        if apart <= least:
+            yield (
+                f"identification.{place} = '{other}' moves as the reference '{one}' does: give a"
+                " point elsewhere, or leave it out"
+            )
+
+
+def short_record(config: Config) -> Iterator[str]:
+    """Yield that a record holds too few segments to identify from, and what would do."""
+    record, spectra, rate = config.record, config.spectra, config.record.sampling_frequency_Hz
+    if config.identification is None:
+        return
+    few = few_averages(effective_averages(record.duration_s, rate, spectra))
+    if not few:
+        return
+    step = spectra.segment_s * (1.0 - spectra.overlap)
+    durations = (spectra.segment_s + more * step for more in count(1))
+    enough = next(
+        duration
+        for duration in durations
+        if effective_averages(duration, rate, spectra) >= FEWEST_AVERAGES
+    )
+    yield (
+        f"record.duration_s = {record.duration_s:g} is {record.duration_s / spectra.segment_s:.2g}"
+        f" segments of spectra.segment_s = {spectra.segment_s:g} s: {few}, and every estimate is"
+        f" flagged: record {math.ceil(enough)} s, or shorten the segment"
+    )

@@ -34,7 +34,11 @@ DIRECTIONS = {
     name: tuple((-1.0 if name[0] == "-" else 1.0) * float(name[-1] == axis) for axis in "xyz")
     for name in get_args(Direction)
 }
-CONTROL = r"\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\u2028\u2029"
+# Control characters, and marks that change the direction of writing.
+CONTROL = (
+    r"\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069"
+    r"\ufeff"
+)
 Label = Annotated[
     str,
     Pattern(
@@ -148,9 +152,7 @@ def read_sidecar(path: str | Path) -> Sidecar:
     try:
         data = read_yaml(path)
     except ConfigError as error:
-        raise ImportProblem(
-            str(error).replace("config/study.yaml", "docs/bring_your_own.md")
-        ) from error
+        raise ImportProblem(str(error)) from error
     try:
         sidecar = Sidecar.model_validate(data)
     except ValidationError as error:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -64,11 +65,11 @@ RESIDUALS = {
 
 
 def contact_plots(
-    statistics: StudyStatistics, gaps: Sequence[float], load_label: str
+    statistics: StudyStatistics, gaps: Sequence[float], load_label: str, caveat: str
 ) -> list[Plot]:
     """Return the Plots of contact, impacts, forces and wear against load, by gap.
 
-    gaps: m, in the order of the control.
+    gaps: m, in the order of the control. caveat: on the wear work rate, may be empty.
     """
     if not statistics.supports:
         return []
@@ -76,6 +77,12 @@ def contact_plots(
         _against_load(statistics, gaps, quantity, load_label)
         for quantity in AGAINST_LOAD
         if math.isfinite(statistics.largest(quantity)[0])
+    ]
+    plots = [
+        replace(plot, caption=f"{plot.caption} {caveat}".rstrip())
+        if plot.name == "wear_work_rate"
+        else plot
+        for plot in plots
     ]
     forces = [_forces(statistics, gaps, load_label)] if plots else []
     return [*plots[:2], *forces, *plots[2:]]

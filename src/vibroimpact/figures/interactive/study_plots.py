@@ -11,7 +11,7 @@ from vibroimpact.reports.equivalent_answer import ALL_SUPPORTS, with_places
 from vibroimpact.reports.study_content import StudyContent
 from vibroimpact.reports.study_page import PagePlots
 from vibroimpact.reports.study_tables import spread_evenly
-from vibroimpact.reports.study_words import load_label
+from vibroimpact.reports.study_words import centred_in, load_label
 from vibroimpact.spectra.welch import driven_axis
 
 from .equivalent import equivalent_plots, places_of
@@ -64,7 +64,7 @@ def study_plots(content: StudyContent, files: StudyFiles) -> PagePlots:
     gaps, loads = statistics.gaps, shown_loads(statistics.gaps, statistics.loads)
     title = load_label(config)
     frames = frame_places(gaps, loads)
-    contact = contact_plots(statistics, gaps, title)
+    contact = contact_plots(statistics, gaps, title, centred_in(config))
     respond = _response_plots if files.spectra else _response_of_series
     response = respond(content, files, frames)
     if contact:

@@ -21,6 +21,7 @@ from vibroimpact.figures.style import (
 )
 from vibroimpact.geometry.sections import outer_width
 from vibroimpact.integration.energy_limit import ENERGY_LIMIT
+from vibroimpact.reports.study_words import centred_sentence
 from vibroimpact.study.cases import case_from_id
 
 from .cases_of_gap import CasesOnDemand
@@ -179,18 +180,21 @@ def records_shown(paths, read):
     )
 
 
-def contact_statistics(config, records):
+def contact_statistics(config, model, records):
     """Return the Sheet of contact statistics and peak stress against load, for every gap.
 
     records: {Case: Dataset} of statistics.
     """
+    gaps = sorted({case.gap_m for case in records}, reverse=True)
+    imperfection = config.integration.imperfection
+    caveat = centred_sentence(imperfection, model.centre_offset, min(gaps))
     caption = (
         "Contact against load, for every gap: fraction of time in contact, impacts per second, RMS"
         " radial velocity at impact, RMS and peak force, wear work rate (normal force times sliding"
         " speed), per support, and the largest bending stress anywhere in the tube with the limit"
         " above which a case is flagged (dashed). Median over seeds and supports, bars from the"
-        " smallest to the largest value."
-    )
+        f" smallest to the largest value. {caveat}"
+    ).rstrip()
     sheet = Sheet(
         "contact_statistics",
         "Contact, wear and stress against load",
@@ -200,7 +204,7 @@ def contact_statistics(config, records):
         sharex=True,
     )
     diameter = outer_width(config.structure.section)
-    for index, gap in enumerate(sorted({case.gap_m for case in records}, reverse=True)):
+    for index, gap in enumerate(gaps):
         colour, marker = (
             GAP_COLOURS[index % len(GAP_COLOURS)],
             GAP_MARKERS[index % len(GAP_MARKERS)],
@@ -255,6 +259,15 @@ def contact_statistics(config, records):
         axes.set_xscale("log")
         if panel != "fraction" and axes.get_legend_handles_labels()[1]:
             axes.set_yscale("log")
+    if caveat:
+        sheet.axes["wear"].text(
+            0.03,
+            0.97,
+            f"centred to {imperfection:g} of the gap:\nhardly any sliding in plane",
+            transform=sheet.axes["wear"].transAxes,
+            va="top",
+            fontsize=8.0,
+        )
     for panel in ("fraction", "rate", "velocity"):
         sheet.axes[panel].set_xlabel("")
     handles, labels = sheet.axes["stress"].get_legend_handles_labels()

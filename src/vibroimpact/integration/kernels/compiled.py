@@ -33,6 +33,9 @@ NO_CACHE = (
     "vibroimpact: the compiled kernels can not be kept ({reason}): every job compiles them again;"
     " set NUMBA_CACHE_DIR to a folder that can be written"
 )
+COMPILING = (
+    "vibroimpact: the kernels are compiled, once for this machine: half a minute, two on a slow one"
+)
 _said: set[str] = set()
 
 
@@ -65,14 +68,15 @@ def entry_point(function: Function) -> Function:
             compiled = _compiled_with_cache(function, place / f"kernels-{IMPORTED_SOURCES}")
             if compiled is not None:
                 return compiled
-        _say_once(", ".join(f"no writing in {place}" for place in cache_places()))
+        _say_once(NO_CACHE, ", ".join(f"no writing in {place}" for place in cache_places()))
     return njit(nogil=True, **WITHOUT_REFERENCE_COUNTS)(function)
 
 
-def _say_once(reason: str) -> None:
-    if not _said:
-        _said.add(reason)
-        print(NO_CACHE.format(reason=reason), file=sys.stderr)
+def _say_once(sentence: str, reason: str = "") -> None:
+    if sentence not in _said:
+        _said.add(sentence)
+        # of the terminal, where the output of a job goes to its log
+        print(sentence.format(reason=reason), file=sys.__stderr__ or sys.stderr, flush=True)
 
 
 def cache_places() -> list[Path]:
@@ -126,12 +130,19 @@ class CheckedCacheFile(IndexDataCacheFile):
             raise OSError("damaged")  # which numba takes for a file that is not there
         return super()._load_data(name)
 
+    def load(self, key: Any) -> Any:
+        """Return machine code, None where it has to be compiled, which is announced."""
+        data = super().load(key)
+        if data is None:
+            _say_once(COMPILING)
+        return data
+
     def save(self, key: Any, data: Any) -> None:
         """Save machine code; a disk that is full or read-only is no reason to stop."""
         try:
             super().save(key, data)
         except OSError as error:
-            _say_once(str(error))
+            _say_once(NO_CACHE, str(error))
 
 
 def _is_whole(path: str) -> bool:

@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-PYTHON_JUDGES = "make judges installs it, from requirements-judges.lock"
+PYTHON_JUDGES = "requirements-judges.lock of the repository lists what to install"
 
 
 class JudgeAbsent(Exception):
