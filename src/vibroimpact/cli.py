@@ -268,7 +268,7 @@ def _campaign(path: str) -> tuple[str | None, list[str]]:
     from vibroimpact.campaign.checks.file_checks import check_file, refused
     from vibroimpact.diagnosis.measurement.comparable import campaign_problems, channel_rows
 
-    campaign, rows = check_file(path, unmade=True)
+    campaign, rows = check_file(path)
     problems = [
         f"{path}: {PREFIX.get(row['level'], '').format(**row)}{row['message']}"
         for row in rows

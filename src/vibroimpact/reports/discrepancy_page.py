@@ -53,7 +53,7 @@ SECTIONS = {
 BAR_PX = 240  # of a probability of 1
 MOST_ROWS, MOST_REGIONS, MOST_MODES = 20, 10, 6
 WHOLE_PX = 1216  # of a figure as wide as the page: 7.6 in at 160 dpi
-LEVEL_ORDER = {"refuse": 0, "warn": 1, "pass": 2}
+LEVEL_ORDER = {"refuse": 0, "warn": 1, "not checked": 2, "pass": 3}
 # Meanings of the floor of the misfit.
 FREE_RUNS = "that between two free runs of one model"
 NOISE = "the scatter of the measurement itself, between periods or averages"

@@ -170,7 +170,7 @@ class CheckResult(_Content):
     """The result of one check of the campaign."""
 
     check: str = Field(description="Name of the check.")
-    level: Literal["pass", "warn", "refuse"]
+    level: Literal["pass", "warn", "refuse", "not checked"]
     record: str | None = Field(description="Name of the record it concerns.")
     channel: str | None = Field(description="Name of the channel it concerns.")
     message: str = Field(description="The result, and the remedy where there is one.")

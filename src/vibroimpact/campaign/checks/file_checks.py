@@ -84,17 +84,17 @@ BANDS_PER_DECADE = 24 / np.log10(200.0 / 5.0)
 FEWEST_PERIODS, GOOD_AVERAGES = 10.0, 6.0
 
 
-def check_file(path: str | Path, unmade: bool = False) -> tuple[xr.Dataset | None, list[dict]]:
+def check_file(path: str | Path) -> tuple[xr.Dataset | None, list[dict]]:
     """Return (campaign Dataset or None, rows of all checks) of a campaign file of any state.
 
-    A file that can not be read gives a single row, which refuses it. unmade: see check_campaign.
+    A file that can not be read gives a single row, which refuses it.
     """
     try:
         campaign = opened_campaign(path)
     except RecordError as error:
         reason = str(error).removeprefix(f"{path}: ")
         return None, [check_row("contract", "refuse", f"The file {reason}.")]
-    rows = check_campaign(campaign, unmade)
+    rows = check_campaign(campaign)
     if any(row["check"] == "contract" and row["level"] == "refuse" for row in rows):
         return None, rows
     try:
@@ -103,12 +103,12 @@ def check_file(path: str | Path, unmade: bool = False) -> tuple[xr.Dataset | Non
         return None, rows
 
 
-def check_campaign(campaign: xr.Dataset, unmade: bool = False) -> list[dict]:
+def check_campaign(campaign: xr.Dataset) -> list[dict]:
     """Return the rows of all checks of a campaign Dataset, in the order of CHECKS.
 
     A check without complaint gives one row of level "pass". One that could not be made gives a row
-    "not checked" with the reason where `unmade` asks for those, else none. Faults of single signals
-    are looked for in what was recorded; all that follows looks at the motion relative to the base.
+    "not checked" with the reason. Faults of single signals are looked for in what was recorded; all
+    that follows looks at the motion relative to the base.
     """
     campaign = decode_texts(campaign)
     problems = [*contract_problems(campaign)]
@@ -146,8 +146,6 @@ def check_campaign(campaign: xr.Dataset, unmade: bool = False) -> list[dict]:
     rows += [
         check_row(check, "pass", said) for check, said in PASSED.items() if check not in complained
     ]
-    if not unmade:
-        rows = [row for row in rows if row["level"] != NOT_CHECKED]
     return sorted(rows, key=lambda row: CHECKS.index(BESIDE.get(row["check"], row["check"])))
 
 

@@ -28,7 +28,7 @@ SIGNS = {"pass": "ok    ", "warn": "WARN  ", "refuse": "REFUSE", "not checked": 
 
 def write_report(folder: str | Path, campaign: xr.Dataset, rows: list[dict], paths: Any) -> None:
     """Check the campaign of a folder and write paths.table, paths.checks (CSV) and paths.text."""
-    checks = check_campaign(campaign, unmade=True)
+    checks = check_campaign(campaign)
     write_table(rows, paths.table)
     write_table(checks, paths.checks, COLUMNS)
     write_text(import_text(folder, campaign, rows, checks), paths.text)

@@ -75,8 +75,8 @@ def signals_of(campaign: xr.Dataset) -> Signals:
     force, response = measured.padded(campaign.sizes["time"])
     valid = np.isfinite(response).all(axis=1)
     force = np.where(valid[:, None], force, np.nan)
-    band = excited_band(force, rate)
-    load = np.sqrt(np.nanmean(force[:, 0] ** 2, axis=-1))
+    band = measured.stated_band or excited_band(force, rate)
+    load = measured.load_rms
     gap = measured.gap
     # of equal loads, as repeats of one force are but for rounding, that of the widest gap
     lowest = np.lexsort((-np.nan_to_num(gap, nan=np.inf), np.round(load, SAME_LOAD)))[0]
