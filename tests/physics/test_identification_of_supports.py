@@ -16,6 +16,7 @@ from vibroimpact.linear.responses import frf
 from vibroimpact.linear.support_groups import reached_supports, support_directions
 from vibroimpact.linear.supported_structure import SupportedStructure
 from vibroimpact.reduction.reduced_model import build_model
+from vibroimpact.spectra.welch import complex_values
 from vibroimpact.study.in_process import identify_support, simulate_case
 
 STRAIGHT = """
@@ -66,6 +67,11 @@ def structure(**changes):
 @pytest.fixture(scope="module")
 def straight():
     return structure()
+
+
+@pytest.fixture(scope="module")
+def straight_records(straight):
+    return records(*straight, SUPPORTS).spectra(0)
 
 
 def records(config, model, values):
@@ -143,6 +149,71 @@ def test_each_support_of_a_straight_tube_comes_back(straight, window):
     resolved = [method for method, *_ in found if np.isfinite(found[method, "plate_2", "y"].k)]
     assert "lscf" in resolved
     check_exact(found, SUPPORTS, ("lscf",))
+
+
+def test_shapes_below_the_band_of_the_force_are_left_out():
+    config, model = structure(
+        excitation={"band_Hz": [10.0, 200.0]},
+        identification={"broadband": {"point": "span_2", "band_Hz": [11.0, 99.0]}},
+    )
+    found = identified(config, model, records(config, model, SUPPORTS).exact("hann"))
+    check_exact(found, SUPPORTS, ("ods", "broadband"))
+
+
+def changed(spectra, change):
+    """Spectra whose complex values are change(random generator, values) of these."""
+    generator, found = np.random.default_rng(54), spectra.copy(deep=True)
+    for name in ("sensor_spectra", "line_spectra"):
+        values = change(generator, complex_values(spectra, name).copy())
+        found[f"{name}_re"].values[:], found[f"{name}_im"].values[:] = values.real, values.imag
+    return found
+
+
+def noise(generator, values):
+    size = values.shape
+    return 1e-9 * (generator.standard_normal(size) + 1j * generator.standard_normal(size))
+
+
+def bins(values):
+    return np.arange(values.shape[-1])
+
+
+ODD_SPECTRA = {
+    "no motion": lambda generator, values: 0.0 * values,
+    "one dead sensor": lambda generator, values: (
+        values * (np.arange(len(values)) > 0)[:, None, None]
+    ),
+    "noise": noise,
+    "flat": lambda generator, values: 0.0 * values + 1e-9,
+    "one line": lambda generator, values: values * (bins(values) == values.shape[-1] // 3),
+    "falls": lambda generator, values: noise(generator, values) * np.exp(-bins(values) / 5.0),
+    "rises": lambda generator, values: noise(generator, values) * (1.0 + bins(values)) ** 2,
+    "all sensors alike": lambda generator, values: 0.0 * values + values[:1],
+    "upper half only": lambda generator, values: values * (bins(values) > values.shape[-1] // 2),
+    "no numbers": lambda generator, values: values * np.where(bins(values) == 5, np.nan, 1.0),
+}
+
+
+@pytest.mark.parametrize("groups", ["all", "each"])
+@pytest.mark.parametrize("kind", ODD_SPECTRA)
+def test_odd_spectra_give_a_reason_not_an_error(straight, straight_records, kind, groups):
+    config, model = straight
+    settings = config.identification.model_copy(update={"groups": groups})
+    config = config.model_copy(update={"identification": settings})
+    spectra = changed(straight_records, ODD_SPECTRA[kind])
+    found = identified(config, model, spectra)
+    places = {("all", "y")} if groups == "all" else {(name, "y") for name in SUPPORTS}
+    assert {key[1:] for key in found} == places
+    for estimate in found.values():
+        assert np.isfinite(estimate.k) or estimate.note, estimate
+    if kind == "no motion":
+        assert all("no motion at span_1.y" in estimate.note for estimate in found.values())
+
+
+def test_a_dead_sensor_leaves_the_comparison_of_the_others(straight):
+    exact = records(*straight, SUPPORTS).exact("hann")
+    found = identified(*straight, changed(exact, ODD_SPECTRA["one dead sensor"]))
+    check_exact(found, SUPPORTS, ("broadband",))
 
 
 def test_supports_of_a_group_share_their_values():

@@ -35,12 +35,14 @@ def guarded(
     record: xr.Dataset,
     averages: float,
     search_Hz: Sequence[float],
+    unusable: str = "",
 ) -> list[Estimate]:
     """Return the estimates of one case with the flags that any method can have.
 
     record: with the residuals of the energy balance, where it has them.
     averages: effective degrees of freedom of a bin.
     search_Hz: where the main peak was looked for.
+    unusable: which channels the methods can not use; a reason for what is not resolved.
     """
     energy = energy_flag(record)
     few = few_averages(averages)
@@ -48,6 +50,8 @@ def guarded(
     for estimate in estimates:
         if estimate.method in FROM_SPECTRA:
             estimate = flagged(estimate, few)
+            if estimate.quality == "unresolved":
+                estimate = replace(estimate, note=joined(unusable, estimate.note))
         if estimate.method in FROM_POLES:
             estimate = flagged(estimate, outside_search(estimate.frequency, search_Hz))
         if estimate.method != "statistical_linearisation":  # it does not see the record
