@@ -7,7 +7,7 @@ import pytest
 
 from tests.made_up_study import GAPS, LOADS, equivalent_rows, summary_rows
 from vibroimpact.reports.equivalent_answer import answers, unmoved, with_places
-from vibroimpact.study.equivalent_table import NOT_MOVED
+from vibroimpact.study.reasons import NOT_MOVED
 
 
 def found(rows, gap, load, direction="y"):

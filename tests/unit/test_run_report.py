@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibroimpact.study.equivalent_table import NOT_MOVED
+from vibroimpact.study.reasons import NOT_MOVED
 from vibroimpact.study.run_report import failure_text, headline, success_text
 
 

@@ -23,7 +23,7 @@ from .case_estimates import (
     estimate_from_shape,
 )
 from .estimate import Estimate
-from .guards import guarded
+from .guards import GUARDED, guarded
 from .identify_supports import SupportsCase, estimates_of_supports
 from .ods import DeflectionShape, ShapeMatch, deflection_shape, match_shape
 from .operational_pole import OperationalPole, PoleSearch, operational_pole
@@ -35,7 +35,7 @@ from .solvable import or_none, unusable_channels
 from .supports_tube import SupportsTube
 
 # Variables of the two files that identify_case uses.
-RECORD_READ = (*MOMENTS, *ENERGY_RESIDUALS)
+RECORD_READ = (*MOMENTS, *ENERGY_RESIDUALS, *GUARDED)
 SPECTRA_READ = (
     "sensor_spectra_re",
     "sensor_spectra_im",

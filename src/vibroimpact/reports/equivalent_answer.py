@@ -12,9 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.study.equivalent_table import NOT_MOVED
-
-from .method_names import method_name
+from vibroimpact.identify.method_names import method_name
+from vibroimpact.study.reasons import NOT_MOVED
 
 # The methods whose agreement is judged, by quantity: a shape carries no damping.
 COMPARED = {"k": ("lscf", "ods", "broadband"), "c": ("lscf", "broadband")}

@@ -11,7 +11,7 @@ import numpy as np
 from vibroimpact.records import read_table
 from vibroimpact.whole_file import problem_of
 
-from .equivalent_table import NOT_MOVED
+from .reasons import NOT_MOVED
 
 # A failed job in the log that Snakemake writes.
 FAILED = re.compile(r"^Error in rule (?P<rule>[^\s:]+).*:\n(?P<about>(?:    .*\n)*)", flags=re.M)

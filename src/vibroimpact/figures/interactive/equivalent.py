@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.figures.style import BLACK, GREY, METHODS, ORANGE, PALE, shown
+from vibroimpact.identify.method_names import method_name
 from vibroimpact.reports.equivalent_answer import AGREEMENT, COMPARED, Answer, Value
-from vibroimpact.reports.method_names import method_name
 
 from .plot import (
     Plot,
