@@ -244,10 +244,10 @@ def test_the_flags_of_some_seeds_reach_the_tables_of_a_study():
     (clean,) = equivalent_rows(summary_rows(consistency_rows(tables[:3])))
     assert clean["flag"] == ""
     other = clean | {"load_rms_N": 6.0}
-    assert "Doubtful: 1 of 2 cases have a flag in equivalent.csv" in success_text(
+    assert "Flagged: 1 of 2 cases have a flag in equivalent.csv" in success_text(
         "results/any", [row, other]
     )
-    assert "Doubtful" not in success_text("results/any", [clean])
+    assert "Flagged" not in success_text("results/any", [clean])
 
 
 def coarse(steps_per_second):
@@ -275,7 +275,7 @@ def test_a_step_too_coarse_for_the_contact_is_flagged(tmp_path, reliability):
     assert all("energy balance is open by 0.1" in row["flag"] for row in of_record)
     assert {row["method"] for row in of_methods if not row["flag"]} == {"statistical_linearisation"}
     write_table(of_record, tmp_path / "statistics.csv")
-    assert "Doubtful: 1 of 1 cases have a flag in statistics.csv" in success_text(tmp_path, [])
+    assert "Flagged: 1 of 1 cases have a flag in statistics.csv" in success_text(tmp_path, [])
     assert np.isnan(answer["k_N_per_m"]) and "energy balance is open" in answer["reason_k"]
     assert "energy balance is open" in answer["flag"]
     of_record, of_methods, (answer,) = tables_of(coarse(10240))

@@ -108,17 +108,17 @@ def test_table_of_the_page_holds_the_recommended_values(page):
     row = next(row for row in rows if (row["gap (mm)"], row["load (N RMS)"]) == ("0.2", "10"))
     # k = 10 x load / gap; the interval holds 0.9 and 1.1 of it with 5 % over seeds.
     assert (row["k (kN/m)"], row["interval of k"]) == ("500", "428 to 578")
-    assert (row["methods on k"], row["methods on c"]) == ("agree", "differ")
+    assert (row["methods on k"], row["methods on c"]) == ("agree", "over 25 % apart")
     assert row["c (N s/m)"] == "750"
 
 
 def test_unresolved_values_have_their_reason_on_the_page(page):
     rows = page.table("why", "time in contact (%)")
     lowest = [row for row in rows if row["loads (N RMS)"] == "0.1" and row["gap (mm)"] == "0.2"]
-    assert [row["value"] for row in lowest] == ["k: not resolved", "c: not resolved"]
-    assert lowest[0]["why"].startswith("no value by LSCF pole")
+    assert [row["value"] for row in lowest] == ["k and c: not resolved"]
+    assert lowest[0]["why"] == "no method resolves k; LSCF pole: no value"
     assert lowest[0]["time in contact (%)"] == "0"
-    differs = next(row for row in rows if row["value"] == "c: differ")
+    differs = next(row for row in rows if row["value"].startswith("c: over 25 %"))
     # Left support: 2 x 0.04 x 10.
     assert differs["loads (N RMS)"] == "10" and differs["time in contact (%)"] == "80"
 
@@ -175,11 +175,19 @@ def test_stress_above_the_limit_is_flagged(page):
 def test_headline_counts_agreement_of_stiffness_and_damping(study):
     told = study.content.headline()
     assert told[0] == (
-        "Stiffness k: of 6 cases of load and gap, the independent methods agree within 25 % in 4"
-        " and do not all resolve it in 2."
+        "Stiffness k: 4 of 4 pairs of load and gap that the methods resolve agree on k within 10 %;"
+        " in 2 k is not resolved."
     )
-    assert "agree within 25 % in 2, differ by more in 2 and do not" in told[1]
-    assert told[2] == (
+    assert told[1] == (
+        "Damping c: 2 of 4 pairs of load and gap that both methods resolve agree on c within 0 %;"
+        " in 2 they are more than 25 % apart; in 2 c is not resolved."
+    )
+    # ods and lscf are 0.9 and 1.0 of k, the broadband comparison 1.1.
+    assert told[2].endswith(
+        "The broadband PSD reads every peak from 6 to 99 Hz: its k is +16 to +16 % from the mean of"
+        " pole and shape."
+    )
+    assert told[3] == (
         "Gap 0.2 mm: k from 50 kN/m at 1 N RMS to 500 kN/m at 10 N RMS; c from 50 N s/m at 1 N RMS"
         " to 750 N s/m at 10 N RMS."
     )
@@ -264,8 +272,9 @@ def test_directions_have_curves_of_their_own(two_directions):
 def test_agreement_map_shows_every_case_with_its_reason(page):
     (cells,) = page.plots()["agreement_c"]["frames"]["0"]
     assert cells["text"] == [["–", "✓", "≠"]] * 2
-    assert cells["customdata"][0][0].startswith("unresolved: no value by LSCF pole")
-    assert cells["customdata"][0][2] == "c = 750 N s/m, spread"
+    assert cells["customdata"][0][0] == "no method resolves k; LSCF pole: no value"
+    assert cells["customdata"][0][1] == "c = 50 N s/m, agree"
+    assert cells["customdata"][0][2].startswith("c = 750 N s/m, the methods are more than 25 %")
 
 
 def test_energy_residuals_stand_beside_their_limits(page):

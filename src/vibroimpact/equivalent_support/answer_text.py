@@ -9,7 +9,7 @@ from typing import Any
 
 from vibroimpact.records import plain_values
 from vibroimpact.study.method_agreement import COMPARED
-from vibroimpact.study.reasons import UNITS
+from vibroimpact.study.reasons import NOT_MOVED, UNITS
 
 from .answer import Answer, GroupAnswer, Span
 
@@ -54,7 +54,12 @@ def as_text(answer: Answer) -> str:
         f"{what} '{answer.study}': equivalent support at {answer.load_rms_N:g} N RMS and a gap of"
         f" {1e3 * answer.gap_m:.4g} mm{level if answer.homogeneous else ''}"
     )
-    blocks = [head, *(_group_text(group, answer.homogeneous) for group in answer.groups)]
+    moved = [group for group in answer.groups if group.moved]
+    blocks = [head, *(_group_text(group, answer.homogeneous) for group in moved)]
+    still = [
+        f"'{group.group}' along {group.direction}" for group in answer.groups if not group.moved
+    ]
+    blocks += [f"No values for {', '.join(still)}: {NOT_MOVED}."] if still else []
     warnings = [f"WARNING: {sentence}." for sentence in answer.warnings]
     return "\n\n".join([*blocks, *warnings, *answer.notes])
 
@@ -62,8 +67,6 @@ def as_text(answer: Answer) -> str:
 def _group_text(group: GroupAnswer, homogeneous: bool) -> str:
     """Return the block of one group."""
     place = f"Group '{group.group}' ({', '.join(group.supports)}), along {group.direction}"
-    if not group.moved:
-        return f"{place}\n  no values: {group.reason_k}"
     lines = [f"{place}; values per support"]
     for name, span, agreement, reason in group.parts:
         words = PARTIAL[name] if agreement == "partial" else AGREEMENTS.get(agreement, agreement)

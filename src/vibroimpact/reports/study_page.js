@@ -45,10 +45,18 @@
   function show(changed) {
     const output = element("load-shown");
     if (output) output.textContent = controlled("load").values[position.load];
+    tellHere();
     for (const plot of data.plots) {
       const follows = plot.controls.includes(changed) || (plot.cursor && changed === "load");
       if (changed === null || follows) draw(plot);
     }
+  }
+
+  function tellHere() {
+    const here = element("here");
+    if (!here) return;
+    const load = controlled("load").numbers[position.load];
+    here.textContent = data.here[[position.gap, position.place, load].join(",")] || "";
   }
 
   function move() {

@@ -13,9 +13,15 @@ from .number_text import digits
 from .study_statistics import RESIDUALS, SEVERAL, Spread, StudyStatistics
 from .study_words import stiffness_unit
 
-AGREEMENTS = {"agree": "agree", "spread": "differ", "unresolved": "not resolved"}
+AGREEMENTS = {
+    "agree": "agree",
+    "spread": "over 25 % apart",
+    "differ": "differ: none recommended",
+    "unresolved": "not resolved",
+}
+PARTIAL = {"k": "two of three", "c": "one of two"}
 NUMBER = re.compile(r"-|-?\d[-+.e\d]*( to -?\d[-+.e\d]*)?")  # a number, an interval or none
-DIFFER = {"spread": "the methods differ by more than 25 %"}
+NUMBERS = re.compile(r"[-+]?\d[-+.e\d]*( (?=[kMG]?N))?[kMG]?")  # with the prefix of a unit
 RESIDUAL_WORDS = {
     "energy_residual": "with the work of the contact forces",
     "potential_energy_residual": "with the contact's potential energy",
@@ -77,16 +83,28 @@ def answer_table(answers: Sequence[Answer], several: bool, unit: str) -> Table:
             digits(1e3 * row.gap_m),
             *((row.group, row.direction) if several else ()),
             digits(row.load_rms_N),
-            *_value_cells(row.k, factor),
-            *_value_cells(row.c, 1.0),
+            *_value_cells(row, "k", factor),
+            *_value_cells(row, "c", 1.0),
         )
         for row in answers
     ]
     return Table(columns, rows)
 
 
-def _value_cells(value: Value, factor: float) -> tuple[str, str, str]:
-    agreement = AGREEMENTS.get(value.agreement, value.agreement)
+def agreement_in_words(row: Answer, quantity: str) -> str:
+    """Return what the methods say of k or c, in a few words."""
+    value: Value = getattr(row, quantity)
+    if row.bounded:
+        return "upper bound" if quantity == "k" else "no contact to tell"
+    words = {**AGREEMENTS, "partial": PARTIAL[quantity]}
+    return words.get(value.agreement, value.agreement)
+
+
+def _value_cells(row: Answer, quantity: str, factor: float) -> tuple[str, str, str]:
+    value: Value = getattr(row, quantity)
+    agreement = agreement_in_words(row, quantity)
+    if row.bounded and quantity == "k":
+        return f"< {digits(factor * row.bound)}", "-", agreement
     if not value.resolved:
         return "-", "-", agreement
     return digits(factor * value.value), span(factor * value.low, factor * value.high), agreement
@@ -102,38 +120,45 @@ def reason_table(
 ) -> Table:
     """Return why values are not resolved or differ, a row per run of loads with the same reason.
 
-    The share of time in contact tells whether there was a support to see.
+    k and c share a row where they share the reason. The share of time in contact tells whether
+    there was a support to see.
     """
     places = ("supports", "direction") if several else ()
     columns = ("gap (mm)", *places, f"loads ({unit} RMS)", "value", "why", "time in contact (%)")
     rows = []
     for place, group in groupby(answers, key=lambda row: row.place):
-        chosen = list(group)
+        curve = list(group)
         for quantity in ("k", "c"):
-            for (agreement, kind), run in groupby(
-                chosen, key=lambda row: _kind(getattr(row, quantity))
-            ):
-                if agreement == "agree" and not kind:
-                    continue
+            for kind, run in groupby(curve, key=lambda row: _kind(row, quantity)):
                 alike = list(run)
                 loads = [row.load_rms_N for row in alike]
-                reason = _reason([getattr(row, quantity).reason for row in alike], loads[0], unit)
+                if kind is None:
+                    continue
+                reasons = [getattr(row, quantity).reason for row in alike]
                 rows.append(
                     (
                         digits(1e3 * place[0]),
                         *(place[1:] if several else ()),
                         digits(loads[0]) if len(loads) == 1 else span(loads[0], loads[-1]),
-                        f"{quantity}: {AGREEMENTS.get(agreement, agreement)}",
-                        reason or DIFFER.get(agreement, "-"),
+                        f"{kind[0]}: {kind[1]}",
+                        _reason(reasons, loads[0], unit),
                         _touching(statistics, place[0], loads),
                     )
                 )
     return Table(columns, rows)
 
 
-def _kind(value: Value) -> tuple[str, str]:
-    """Return (agreement, reason without its numbers): loads alike in both share a row."""
-    return value.agreement, re.sub(r"[-+]?\d[-+.e\d]*", "#", value.reason)
+def _kind(row: Answer, quantity: str) -> tuple[str, str, str] | None:
+    """Return (k, c or both, agreement, reason without its numbers), by which loads share a row.
+
+    None where there is nothing to tell, or k tells it.
+    """
+    value: Value = getattr(row, quantity)
+    both = not row.k.resolved and not row.c.resolved and row.k.reason == row.c.reason
+    if not value.reason or (both and quantity == "c"):
+        return None
+    name = "k and c" if both and not row.bounded else quantity
+    return name, agreement_in_words(row, quantity), NUMBERS.sub("#", value.reason)
 
 
 def _reason(reasons: Sequence[str], load: float, unit: str) -> str:

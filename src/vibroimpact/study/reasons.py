@@ -4,14 +4,14 @@ a reader's words.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from vibroimpact.display_units import display_unit
 from vibroimpact.identify.method_names import method_name
 
-from .method_agreement import FEWEST, Span
+from .method_agreement import AGREEMENT, FEWEST, Span
 
 NOT_MOVED = "the force does not move the supports in this direction"
 HARDLY = 0.05  # share of time in contact below which a tube hardly touches
@@ -86,3 +86,38 @@ def _silence(row: dict) -> str:
     if np.isfinite(row.get("k_bound", np.nan)):
         return "does not tell k from none"
     return row.get("reason") or "no value"
+
+
+def agreement_sentence(
+    quantity: str, kinds: Sequence[str], cases: str, apart: float = AGREEMENT
+) -> str:
+    """Return how often the methods agree on k or c, and what the other cases are.
+
+    kinds: of each case its verdict, or "bounded" for an upper bound of k.
+    cases: such as "pairs of load and gap".
+    apart: largest relative distance of a method from the recommended value where they agree.
+    """
+    count = {kind: kinds.count(kind) for kind in dict.fromkeys(kinds)}
+    every = sum(count.get(kind, 0) for kind in ("agree", "spread", "differ"))
+    several = "both methods" if quantity == "c" else "the methods"
+    parts = [
+        f"{count.get('agree', 0)} of {every} {cases} that {several} resolve agree on {quantity}"
+        f" within {100.0 * apart:.0f} %"
+        if every
+        else f"{several} resolve {quantity} in none of {len(kinds)} {cases}"
+    ]
+    partly = (
+        "one of two methods resolves c" if quantity == "c" else "two of three methods resolve k"
+    )
+    parts += [
+        f"in {count[kind]} {text}"
+        for kind, text in (
+            ("spread", "they are more than 25 % apart"),
+            ("differ", "they differ and nothing is recommended"),
+            ("bounded", f"the tube hardly touches{' and there is no c' * (quantity == 'c')}"),
+            ("partial", partly),
+            ("unresolved", f"{quantity} is not resolved"),
+        )
+        if kind in count
+    ]
+    return "; ".join(parts)
