@@ -56,7 +56,9 @@
     const here = element("here");
     if (!here) return;
     const load = controlled("load").numbers[position.load];
-    here.textContent = data.here[[position.gap, position.place, load].join(",")] || "";
+    const answer = data.here.find(([gap, place, at]) =>
+      gap === position.gap && place === position.place && at === load);
+    here.textContent = answer ? answer[3] : "";
   }
 
   function move() {

@@ -20,8 +20,9 @@ AGREEMENTS = {
     "unresolved": "not resolved",
 }
 PARTIAL = {"k": "two of three", "c": "one of two"}
-NUMBER = re.compile(r"-|-?\d[-+.e\d]*( to -?\d[-+.e\d]*)?")  # a number, an interval or none
+NUMBER = re.compile(r"-|(< )?-?\d[-+.e\d]*( to -?\d[-+.e\d]*)?")  # a number, an interval or none
 NUMBERS = re.compile(r"[-+]?\d[-+.e\d]*( (?=[kMG]?N))?[kMG]?")  # with the prefix of a unit
+LONG_CELL = 30  # characters of a cell that holds a sentence
 RESIDUAL_WORDS = {
     "energy_residual": "with the work of the contact forces",
     "potential_energy_residual": "with the contact's potential energy",
@@ -57,6 +58,10 @@ class Table(NamedTuple):
         """Return for each column whether it holds numbers, which are aligned to the right."""
         cells = [[row[at] for row in self.rows] for at in range(len(self.columns))]
         return [bool(column) and all(map(NUMBER.fullmatch, column)) for column in cells]
+
+    def wordy(self) -> bool:
+        """Whether some cells hold sentences, so that a narrow screen shows a row as a block."""
+        return any(len(cell) > LONG_CELL for row in self.rows for cell in row)
 
 
 def answer_table(answers: Sequence[Answer], several: bool, unit: str) -> Table:

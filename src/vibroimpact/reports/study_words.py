@@ -181,24 +181,24 @@ def _course(rows: Sequence[Answer], quantity: str, scale: tuple[str, float], loa
     )
 
 
-def answers_by_place(content: Any) -> dict[str, str]:
-    """Return the answer at each position of the page's controls, as text.
+def answers_by_place(content: Any) -> list[tuple[int, int, float, str]]:
+    """Return (gap, group and direction, load, k and c as text) for the controls of the page.
 
-    The keys are "number of the gap, number of the group and direction, load", as the page's script
-    writes them.
-
-    content: the StudyContent.
+    The first two are positions of the controls, the load is in its unit. content: StudyContent.
     """
     gaps = list(dict.fromkeys(row.gap_m for row in content.answers))
     pairs = list(dict.fromkeys((row.group, row.direction) for row in content.answers))
     scale = stiffness_unit([row.k.value for row in content.answers])
-    return {
-        f"{gaps.index(row.gap_m)},{pairs.index((row.group, row.direction))},{row.load_rms_N!r}": (
+    return [
+        (
+            gaps.index(row.gap_m),
+            pairs.index((row.group, row.direction)),
+            row.load_rms_N,
             f"{answer_in_words(row, scale)} In a shell: vibroimpact equivalent {content.name}"
-            f" --load {row.load_rms_N:g} --gap {row.gap_m:g}"
+            f" --load {row.load_rms_N:g} --gap {row.gap_m:g}",
         )
         for row in content.answers
-    }
+    ]
 
 
 def answer_in_words(row: Answer, scale: tuple[str, float]) -> str:
