@@ -167,6 +167,19 @@ def bounded(seed, bounds, touching, **values):
     return rows
 
 
+def test_a_stiffness_that_most_methods_know_weakly_says_so():
+    note = {"quality": "weak", "reason": "standard error 27% of k"}
+    rows = [case(1.0e5, seed) for seed in range(2)]
+    weak = [[row | note if row["method"] != "ods" else row for row in table] for table in rows]
+    assert summary_of(*weak)["lscf"]["reason"] == "weak: standard error 27% of k"
+    row = answer_of(*weak)
+    assert (row["k_N_per_m"], row["agreement_k"]) == (1.0e5, "agree")
+    assert row["reason_k"] == "2 of 3 methods are weak: standard error 27% of k"
+    assert row["reason_c"] == ""
+    one = [[row | note if row["method"] == "ods" else row for row in table] for table in rows]
+    assert answer_of(*one)["reason_k"] == ""
+
+
 def test_an_unresolved_stiffness_has_an_upper_bound():
     bounds = {"lscf": 2.4e3, "ods": 7.2e3, "broadband": 2.7e3}
     row = answer_of(bounded(0, bounds, 0.003), bounded(1, bounds | {"lscf": 2.5e3}, 0.003))

@@ -142,7 +142,7 @@ class Answer:
             place = f"of '{group.group}' along {group.direction}"
             sentences += [f"the case {place} has a flag: {group.flag}"] if group.flag else []
             for name, span, agreement, reason in group.parts:
-                if not span.resolved or agreement in ("", "agree"):
+                if not span.resolved or not reason:
                     continue
                 taken = group.anyway and agreement in ("differ", "unresolved")
                 value = f"{name} {place}"

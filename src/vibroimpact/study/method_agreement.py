@@ -24,6 +24,7 @@ AGREEMENT = 0.25
 # partial: those that resolve the value agree; spread: they are farther apart, with intervals that
 # overlap; differ: with disjoint ones, so that there is no recommended value.
 VERDICTS = ("agree", "partial", "spread", "differ", "unresolved")
+WEAK = "weak: "  # how the reason of a value begins that is resolved, but weakly
 Span = tuple[float, float, float]  # median, smallest, largest; NaN where not resolved
 SUMMARY_COLUMNS = (
     "gap_m",
@@ -84,7 +85,8 @@ def summary_rows(rows: list[dict]) -> list[dict]:
     would be a chance selection.
     ratio: k_median over the median of the k_median of the three compared methods.
     verdict_k, verdict_c: of the compared methods, see verdict; empty in the rows of all others.
-    reason: why k or c is not resolved; empty where both are, or where the method never tells c.
+    reason: why k or c is not resolved, or k is weak; empty where both are, or where the method
+        never tells c.
     flag: what makes the values of one or more seeds doubtful, and in how many, see identify.guards.
     k_bound: N/m, that k is below where it does not differ from 0, the largest over seeds.
     contact_fraction: median over seeds. caution: what else is to be known of the cases.
@@ -207,10 +209,10 @@ def _bound(cases: list[dict], k: Span) -> float:
 
 
 def _reason(cases: list[dict], span: dict[str, tuple]) -> str:
-    """Return why k or c of a method is not resolved, from the reasons of its seeds."""
+    """Return why k or c of a method is not resolved, or weak, from the reasons of its seeds."""
     if np.isfinite(span["k"][0]):
         if np.isfinite(span["c"][0]) or cases[0]["method"] not in COMPARED_DAMPING:
-            return ""
+            return _weak(cases)
         column = "c_N_s_per_m"
     else:
         column = "k_N_per_m"
@@ -220,6 +222,13 @@ def _reason(cases: list[dict], span: dict[str, tuple]) -> str:
     if len(missing) == len(cases):
         return stated
     return f"not resolved in {len(missing)} of {len(cases)} seeds: {stated}"
+
+
+def _weak(cases: list[dict]) -> str:
+    """Return why the k of a method is weak in more than half of the seeds that resolve it."""
+    found = [row for row in cases if np.isfinite(row["k_N_per_m"]) and not row["flag"]]
+    weak = [row for row in found if row["quality"] == "weak"]
+    return f"{WEAK}{weak[0]['reason']}" if 2 * len(weak) > len(found) else ""
 
 
 def counted(texts: Sequence[str]) -> str:

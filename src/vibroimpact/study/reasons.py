@@ -11,7 +11,7 @@ import numpy as np
 from vibroimpact.display_units import display_unit
 from vibroimpact.identify.method_names import method_name
 
-from .method_agreement import AGREEMENT, FEWEST, Span
+from .method_agreement import AGREEMENT, FEWEST, WEAK, Span
 
 NOT_MOVED = "the force does not move the supports in this direction"
 HARDLY = 0.05  # share of time in contact below which a tube hardly touches
@@ -61,7 +61,7 @@ def _reason(
     quantity: str, methods: Mapping[str, dict], spans: Mapping[str, Span], agreement: str
 ) -> str:
     if agreement == "agree":
-        return ""
+        return _weakness(methods, spans) if quantity == "k" else ""
     found = {name: span for name, span in spans.items() if np.isfinite(span[0])}
     values = ", ".join(
         f"{method_name(name)} {in_unit(span[0], quantity)}" for name, span in found.items()
@@ -79,6 +79,14 @@ def _reason(
     if found:
         return f"only {values}, and {COUNTS[FEWEST[quantity]]} methods must resolve it; {why}"
     return f"no method resolves {quantity}; {why}"
+
+
+def _weakness(methods: Mapping[str, dict], spans: Mapping[str, Span]) -> str:
+    """Return that most of the compared methods resolve k weakly, or nothing."""
+    weak = [name for name in spans if str(methods[name].get("reason", "")).startswith(WEAK)]
+    if 2 * len(weak) <= len(spans):
+        return ""
+    return f"{len(weak)} of {len(spans)} methods are {methods[weak[0]]['reason']}"
 
 
 def _silence(row: dict) -> str:
