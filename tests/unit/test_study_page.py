@@ -17,6 +17,7 @@ from PIL import Image
 from tests.made_up_study import GAPS, LOADS, MadeUpStudy, equivalent_rows, made_up_config
 from vibroimpact.config.reading import check_config, load_config
 from vibroimpact.config.stage_settings import StageSettings
+from vibroimpact.figures.interactive.equivalent import equivalent_plots
 from vibroimpact.figures.interactive.pictures import few_colours
 from vibroimpact.figures.interactive.shape import contact_along_plot, shapes_of
 from vibroimpact.figures.interactive.spectrum import band_of, blocks_of, spectra_of_series
@@ -26,8 +27,13 @@ from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.reports.captions import CATEGORIES, CaptionError, read_caption
 from vibroimpact.reports.equivalent_answer import Answer, Value
 from vibroimpact.reports.study_statistics import study_statistics
-from vibroimpact.reports.study_tables import Table, reason_table
-from vibroimpact.reports.study_words import contact_sentences, run_sentence
+from vibroimpact.reports.study_tables import Table, answer_table, reason_table
+from vibroimpact.reports.study_words import (
+    answer_in_words,
+    contact_sentences,
+    headline,
+    run_sentence,
+)
 from vibroimpact.study.cases import all_cases, case_from_id
 
 ROOT = Path(__file__).parents[2]
@@ -191,6 +197,37 @@ def test_headline_counts_agreement_of_stiffness_and_damping(study):
         "Gap 0.2 mm: k from 50 kN/m at 1 N RMS to 500 kN/m at 10 N RMS; c from 50 N s/m at 1 N RMS"
         " to 750 N s/m at 10 N RMS."
     )
+
+
+def test_k_and_c_stand_at_the_place_of_the_controls(study, page):
+    data = json.loads(next(script for script in page.scripts if script.startswith('{"plots"')))
+    here = {(gap, place, load): text for gap, place, load, text in data["here"]}
+    assert len(here) == len(GAPS) * len(LOADS)
+    assert here[0, 0, 10.0].startswith("k = 500 kN/m (428 to 578); c = 750 N s/m (")
+    assert here[0, 0, 10.0].endswith(f"equivalent {study.content.name} --load 10 --gap 0.0002")
+    assert here[1, 0, 0.1].startswith("no k: no method resolves k; LSCF pole: no value.")
+
+
+def test_a_bounded_stiffness_is_shown_everywhere(study):
+    text = "k < 2.45 kN/m: the tube hardly touches, 0.3 % of the time"
+    lost = Value(*[math.nan] * 3, "unresolved", text)
+    row = Answer(2.0e-4, 0.1, "all", "y", lost, lost, 2.45e3, 0.003)
+    assert answer_table([row], False, "N").rows[0][2:5] == ("< 2450", "-", "upper bound")
+    ((gap, loads, value, why, _),) = reason_table([row], study.content.statistics, False, "N").rows
+    assert (gap, loads, value, why) == ("0.2", "0.1", "k: upper bound", text)
+    assert answer_in_words(row, ("kN/m", 1e-3)) == text + "."
+    k, _, _, agreement, _ = equivalent_plots([row], [], "Load (N RMS)")
+    (trace,) = k.frames["0,0"]
+    assert (trace["name"], trace["y"]) == ("upper bound", [2450.0])
+    assert agreement.frames["0"][0]["text"] == [["<"]]
+    assert "in 1 the tube hardly touches" in headline(study.config, [row])[0]
+
+
+def test_sentences_in_tables_are_blocks_on_a_narrow_screen(page):
+    titles = [value for tag, name, value in page.attributes if (tag, name) == ("td", "data-title")]
+    assert "why" in titles
+    classes = [value for tag, name, value in page.attributes if (tag, name) == ("table", "class")]
+    assert "words" in classes and "" in classes
 
 
 def test_every_load_and_gap_has_its_spectrum(page, study):

@@ -112,7 +112,7 @@ def answers(
     return sorted(found, key=lambda row: (-row.gap_m, row.group, row.direction, row.load_rms_N))
 
 
-def _place(row: dict) -> tuple:
+def _place(row: dict) -> tuple[float, float, str, str]:
     return float(row["gap_m"]), float(row["load_rms_N"]), row["group"], row["direction"]
 
 
