@@ -488,10 +488,11 @@ def test_a_missed_peak_is_told_by_its_factor():
 
 def test_the_chart_shows_the_main_peak_and_its_pole(sheets, config):
     axes = next(iter(sheets[0]["figure_09_stabilisation"].axes.values()))
-    assert axes.get_xlim() == pytest.approx(tuple(config.identification.peak_search_Hz))
     found = re.search(r"([\d.]+) Hz, stable in (\d+) of (\d+) orders", axes.get_title(loc="left"))
     low, high = config.identification.peak_search_Hz
-    assert low < float(found[1]) < high and 0 < int(found[2]) <= int(found[3])
+    assert low <= axes.get_xlim()[0] < float(found[1]) < axes.get_xlim()[1] <= high
+    assert axes.get_xlim()[1] < 45.0  # of the free tube's second mode
+    assert 0 < int(found[2]) <= int(found[3])
 
 
 def test_no_residual_is_drawn_below_round_off(sheets):

@@ -16,7 +16,7 @@ from .study_words import stiffness_unit
 AGREEMENTS = {
     "agree": "agree",
     "spread": "over 25 % apart",
-    "differ": "differ: none recommended",
+    "differ": "differ",
     "unresolved": "not resolved",
 }
 PARTIAL = {"k": "two of three", "c": "one of two"}
@@ -147,7 +147,7 @@ def reason_table(
                         digits(loads[0]) if len(loads) == 1 else span(loads[0], loads[-1]),
                         f"{kind[0]}: {kind[1]}",
                         _reason(reasons, loads[0], unit),
-                        _touching(statistics, place[0], loads),
+                        _touching(statistics, alike),
                     )
                 )
     return Table(columns, rows)
@@ -173,9 +173,14 @@ def _reason(reasons: Sequence[str], load: float, unit: str) -> str:
     return f"{reasons[0]} (at {digits(load)} {unit} RMS, likewise at the others)"
 
 
-def _touching(statistics: StudyStatistics, gap_m: float, loads: Sequence[float]) -> str:
+def _touching(statistics: StudyStatistics, alike: Sequence[Answer]) -> str:
+    """Return the range of the time in contact: of the answers, or of all supports without it."""
     values = [
-        100.0 * statistics.spread("contact_fraction", gap_m, load, SEVERAL).median for load in loads
+        100.0 * row.touching
+        if math.isfinite(row.touching)
+        else 100.0
+        * statistics.spread("contact_fraction", row.gap_m, row.load_rms_N, SEVERAL).median
+        for row in alike
     ]
     finite = [value for value in values if math.isfinite(value)]
     if not finite:

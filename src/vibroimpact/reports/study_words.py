@@ -169,7 +169,7 @@ def _course(rows: Sequence[Answer], quantity: str, scale: tuple[str, float], loa
     ]
     unit, factor = scale
     if not found:
-        return f"{quantity} is not resolved at any load"
+        return f"no {quantity} is recommended at any load"
     (first, low), (last, high) = found[0], found[-1]
     if len(found) == 1:
         return (
@@ -214,7 +214,8 @@ def answer_in_words(row: Answer, scale: tuple[str, float]) -> str:
             parts.append(f"{name} = {digits(factor * value.value)} {unit} ({ends}){more}")
         elif name == "k" or value.reason != row.k.reason:
             parts.append(value.reason if row.bounded else f"no {name}: {value.reason}")
-    return "; ".join(parts) + "."
+    text = "; ".join(parts)
+    return text[:1].replace("n", "N") + text[1:] + "."  # but k stays k
 
 
 def place_in_words(gap_m: float, group: str, direction: str, several: bool | None = None) -> str:

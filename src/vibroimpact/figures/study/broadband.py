@@ -59,16 +59,13 @@ def figure_12_broadband(config, model, curves, spectra, rows):
     shape = model.sensor_shapes[:, model.sensor_names.index(sensor)]
     for load in loads:
         axes, case = sheet.axes[f"{load:g} N"], cases[load]
-        found = next(
-            (
-                row
-                for row in rows
-                if row["method"] == "broadband"
-                and row["load_rms_N"] == load
-                and row["seed"] == case.seed
-            ),
-            None,
-        )
+        found = [
+            row
+            for row in rows
+            if row["method"] == "broadband"
+            and row["load_rms_N"] == load
+            and row["seed"] == case.seed
+        ]
         apart = _panel(
             sheet,
             axes,
@@ -92,8 +89,11 @@ def figure_12_broadband(config, model, curves, spectra, rows):
 
 def _values(found):
     """Return the identified support in words."""
-    if found is None or not np.isfinite(found["k_N_per_m"]):
+    if len(found) > 1:
+        return "each support with its own k and c"
+    if not found or not np.isfinite(found[0]["k_N_per_m"]):
         return "no k resolved"
+    found = found[0]
     damping = (
         f", c = {number(found['c_N_s_per_m'])} N s/m"
         if np.isfinite(found["c_N_s_per_m"])

@@ -28,6 +28,7 @@ from .psd_table import driven_sensor
 from .seed_scatter import over_seeds
 
 SHOWN_PEAKS = 5
+NEAR = 1.6  # times the frequency of the main peak: what a chart shows to both sides
 FEWEST_ORDERS = 5  # with a stable pole, which make a column
 POLE_METHODS = ("peak_half", "peak_quarter", "peak_25th", "lscf")
 
@@ -204,11 +205,12 @@ def figure_09_stabilisation(config, curves, spectra, rows):
         "Stabilisation charts of the output-only LSCF, first seed, gap"
         f" {gap_label(next(iter(curves)).gap_m, outer_width(config.structure.section))}: poles"
         f" by model order over the PSD of displacement at {sensor} (grey, logarithmic, right axis)."
-        " Poles of the main peak alone, in the band where it is searched. A pole is stable when"
+        " Poles near the main peak alone. A pole is stable when"
         f" frequency ({STABLE_FREQUENCY:.0%}), damping ({STABLE_DAMPING:.0%}) and participation"
         " keep their values from the order below. Circled: the pole that is taken; line: its"
         f" column, stable in {FEWEST_ORDERS} or more orders at {len(stable)} of {len(cases)} loads."
-        " Left: of these, the load at which the peak is widest; right: the largest load."
+        f" Left: {'of these, ' if stable else ''}the load at which the peak is widest; right: the"
+        " largest load."
     )
     sheet = Sheet(
         "figure_09_stabilisation",
@@ -267,6 +269,9 @@ def _orders_of_pole(fitted):
 def _chart(sheet, axes, config, fitted, spectrum, sensor):
     """Draw one chart over the PSD."""
     low, high = config.identification.peak_search_Hz
+    taken, own = _pole_taken(fitted) if "chart_order" in fitted else (np.nan, [])
+    if own:
+        low, high = max(low, taken / NEAR), min(high, taken * NEAR)
     load = f"load {spectrum.attrs['load_rms_N']:.3g} N RMS"
     axes.set_title(load)
     frequency = spectrum["frequency"].values
@@ -318,14 +323,19 @@ def _chart(sheet, axes, config, fitted, spectrum, sensor):
             label=name,
             **style,
         )
-    taken, chosen = _pole_taken(fitted)
-    if not chosen:
-        return
+    if own:
+        _mark_taken(sheet, axes, taken, place[own], order[own])
+        found = f"stable in {_orders_of_pole(fitted)} of {np.unique(order).size} orders"
+        axes.set_title(f"{load}\n{taken:.2f} Hz, {found}")
+
+
+def _mark_taken(sheet, axes, taken, place, order):
+    """Mark the pole that is taken: a line at its frequency, and a circle at each of its orders."""
     sheet.mark(axes, "frequency_Hz", taken, "pole taken", color=RED, linewidth=0.8)
     sheet.line(
         axes,
-        ("frequency_Hz", place[chosen]),
-        ("model_order", order[chosen]),
+        ("frequency_Hz", place),
+        ("model_order", order),
         "taken",
         linestyle="none",
         marker="o",
@@ -334,5 +344,3 @@ def _chart(sheet, axes, config, fitted, spectrum, sensor):
         color=RED,
         label="taken for the main peak",
     )
-    found = f"stable in {_orders_of_pole(fitted)} of {np.unique(order).size} orders"
-    axes.set_title(f"{load}\n{taken:.2f} Hz, {found}")
