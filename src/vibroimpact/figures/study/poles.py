@@ -209,7 +209,7 @@ def figure_09_stabilisation(config, curves, spectra, rows):
         f" frequency ({STABLE_FREQUENCY:.0%}), damping ({STABLE_DAMPING:.0%}) and participation"
         " keep their values from the order below. Circled: the pole that is taken; line: its"
         f" column, stable in {FEWEST_ORDERS} or more orders at {len(stable)} of {len(cases)} loads."
-        f" Left: {'of these, ' if stable else ''}the load at which the peak is widest; right: the"
+        f" Shown: {'of these, ' if stable else ''}the load at which the peak is widest, and the"
         " largest load."
     )
     sheet = Sheet(
