@@ -209,6 +209,7 @@ def test_the_pole_alone_resolves_no_one_of_several_supports():
     left, right = equivalent_rows(summary_rows(consistency_rows([rows])))
     assert (left["agreement_k"], right["agreement_k"]) == ("agree", "unresolved")
     assert np.isnan(right["k_N_per_m"])
+    assert right["reason_k"].startswith("only deflection shape 100 kN/m, and two methods must")
 
 
 def test_of_several_supports_the_shape_must_see_what_it_can():
@@ -218,10 +219,13 @@ def test_of_several_supports_the_shape_must_see_what_it_can():
         place = SimpleNamespace(group="all", direction=direction)
         for load, missing in ((1.0, ("ods",)), (5.0, silent)):
             rows += case(1.0e5, 0, load=load, silent=missing, place=place)
-    found = {
-        (row["direction"], row["load_rms_N"]): row["k_N_per_m"]
-        for row in equivalent_rows(summary_rows(consistency_rows([rows])))
-    }
+    table = equivalent_rows(summary_rows(consistency_rows([rows])))
+    found = {(row["direction"], row["load_rms_N"]): row["k_N_per_m"] for row in table}
+    (lost,) = [row for row in table if np.isnan(row["k_N_per_m"])]
+    assert lost["reason_k"] == (
+        "only broadband PSD 100 kN/m, and two methods must resolve it; deflection shape: ods sees"
+        " nothing"
+    )
     assert found["x", 1.0] == found["x", 5.0] == 1.0e5  # the shape never sees x
     assert np.isnan(found["y", 1.0]) and found["y", 5.0] == 1.0e5
 

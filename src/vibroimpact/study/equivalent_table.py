@@ -79,9 +79,9 @@ def _row(place: tuple, methods: dict[str, dict], several: bool, shape_needed: bo
     shape_needed: whether the stiffness must be resolved by the shape.
     """
     spans = {quantity: compared_spans(methods, quantity, several) for quantity in "kc"}
-    agreement = {quantity: verdict(spans[quantity], quantity) for quantity in "kc"}
     if shape_needed and np.isnan(spans["k"].get("ods", NO_SPAN)[0]):
-        agreement["k"] = "unresolved"
+        spans["k"].pop("lscf", None)  # one reading with the broadband comparison
+    agreement = {quantity: verdict(spans[quantity], quantity) for quantity in "kc"}
     k = recommended(spans["k"], agreement["k"])
     c = recommended(spans["c"], agreement["c"]) if np.isfinite(k[0]) else NO_SPAN
     bound = (

@@ -145,7 +145,7 @@ def compared_spans(methods: Mapping[str, dict], quantity: str, several: bool) ->
         if name in methods
     }
     if several and np.isnan(methods.get("broadband", {}).get("k_median", np.nan)):
-        spans |= {"lscf": (np.nan,) * 3} if "lscf" in spans else {}
+        spans.pop("lscf", None)
     return spans  # type: ignore[return-value]
 
 
