@@ -66,8 +66,8 @@ def summary_rows():
                         "k_low": 0.95 * k,
                         "k_high": 1.05 * k,
                         "c_median": c,
-                        "c_low": 0.8 * c,
-                        "c_high": 1.2 * c,
+                        "c_low": 0.6 * c,
+                        "c_high": 1.5 * c,
                         "ratio": 1.0,
                         "verdict": "agree" if load >= RESOLVED_FROM else "unresolved",
                     }

@@ -37,3 +37,15 @@ def made_up_study(folder, model, rows=None):
     write_table(rows or summary_rows(), folder / "consistency_summary.csv")
     write_model(model, folder / "model.nc")
     return folder
+
+
+def disputed_study(folder, model):
+    """A study in which the pole has a fifth of the k and c of the other methods' intervals."""
+    names = [f"{name}_{part}" for name in "kc" for part in ("median", "low", "high")]
+    rows = [
+        row | {name: 0.2 * row[name] for name in names} if row["method"] == "lscf" else row
+        for row in summary_rows()
+    ]
+    for row in rows:  # the c of a method lies between 0.8 and 1.2 of its median
+        row |= {"c_low": 0.8 * row["c_median"], "c_high": 1.2 * row["c_median"]}
+    return made_up_study(folder, model, rows)

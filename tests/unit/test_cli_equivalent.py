@@ -5,11 +5,14 @@ import io
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.exported_springs import nastran
-from tests.study_tables import k_law, made_up_study
+from tests.study_tables import disputed_study, k_law, made_up_study
 from vibroimpact.cli import main
+from vibroimpact.equivalent_support.command import FORMATS
+from vibroimpact.records import write_table
 
 ROOT = Path(__file__).parents[2]
 
@@ -69,11 +72,43 @@ def test_outside_the_grid_is_a_sentence_and_code_1(run, study):
 
 def test_what_is_not_resolved_gives_code_1_and_no_file(run, study, tmp_path):
     code, output, errors = run(study, "--load", 1, "--gap", 3e-4)
-    assert code == 1 and "k   unresolved" in output and "do not resolve k" in errors
+    assert code == 1 and "k   unresolved" in output and "no method resolves k" in errors
     path = tmp_path / "out.bdf"
     code, output, errors = run(study, "--load", 1, "--gap", 3e-4, "--export", "nastran", path)
     assert (code, output) == (1, "") and errors.startswith("nothing to export")
     assert not path.exists()
+
+
+def test_methods_that_differ_give_code_1_until_one_is_taken(run, tmp_path, study_model):
+    study = disputed_study(tmp_path, study_model)
+    case = (study, "--load", 4, "--gap", 1e-4)
+    code, output, errors = run(*case)
+    assert code == 1 and "no recommended value: the methods differ" in output
+    assert "To take the value of one method: --anyway lscf, ods or broadband" in errors
+    path = tmp_path / "out"
+    assert run(*case, "--export", "nastran", path)[0] == 1 and not path.exists()
+    for form in FORMATS:
+        code, output, errors = run(*case, "--anyway", "broadband", "--export", form, path)
+        assert (code, errors) == (0, "")
+        head = " ".join(path.read_text().replace("\n", " ").split())[:250].replace("$ ", "")
+        assert "WARNING" in head or '"warnings"' in head, form
+
+
+def test_an_upper_bound_is_exported_as_a_sentence(run, tmp_path, study_model):
+    study = made_up_study(tmp_path, study_model)
+    text = "k < 2.45 kN/m: the tube touches nothing"
+    row = dict.fromkeys(("k_N_per_m", "k_low", "k_high", "c_N_s_per_m", "c_low", "c_high"), np.nan)
+    row |= {"gap_m": 1e-4, "load_rms_N": 1.0, "group": "all", "direction": "y", "k_bound": 2.45e3}
+    row["contact_fraction"] = 0.0
+    row |= {"agreement_k": "unresolved", "agreement_c": "unresolved"}
+    write_table([row | {"reason_k": text, "reason_c": text}], study / "equivalent.csv")
+    for form in FORMATS:
+        path = tmp_path / "out"
+        arguments = (study, "--load", 1, "--gap", 1e-4, "--export", form, path)
+        assert run(*arguments)[::2] == (0, ""), form
+        words = [word for word in path.read_text().split() if word not in ("$", "**", "#", "!")]
+        sentence = f"no spring along y at left, right: per support {text}"
+        assert sentence in " ".join(words), form
 
 
 def test_the_export_holds_the_answer(run, study, tmp_path):

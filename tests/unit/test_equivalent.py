@@ -5,7 +5,14 @@ import dataclasses
 import numpy as np
 import pytest
 
-from tests.study_tables import FACTORS, GAPS, k_law, made_up_study, summary_rows
+from tests.study_tables import (
+    FACTORS,
+    GAPS,
+    disputed_study,
+    k_law,
+    made_up_study,
+    summary_rows,
+)
 from vibroimpact import EquivalentError, equivalent
 from vibroimpact.equivalent_support.answer import NOT_MOVED
 from vibroimpact.equivalent_support.answer_text import as_csv, as_plain, as_text
@@ -88,11 +95,11 @@ def test_the_sentence_names_the_file_of_the_study(tmp_path, monkeypatch, study_m
 def test_what_is_not_resolved_has_a_reason_and_no_number(study):
     (group,) = equivalent(study, 1.0, 3.0e-4).groups
     assert not group.k.resolved and group.agreement_k == "unresolved"
-    assert "lscf, ods, broadband do not resolve k (1 N at 0.3 mm)" in group.reason_k
+    assert group.reason_k == "no method resolves k; LSCF pole: no value"
     assert group.secant_k > 0.0 and group.agreeing[0] == pytest.approx(2.0 / 3.0e-4)
     answer = equivalent(study, 1.0, 3.0e-4)
-    assert len(answer.unresolved) == 2  # k and c
-    assert "k   unresolved: lscf" in as_text(answer)
+    assert len(answer.unresolved) == 1  # k and c for one reason
+    assert "k   unresolved: no method resolves k" in as_text(answer)
     assert as_plain(answer)["groups"][0]["k"]["value"] is None
 
 
@@ -127,9 +134,9 @@ def test_both_schemas_of_the_summary_are_read(tmp_path):
     ]
     assert pair[0]["k"] == pair[1]["k"]
     for name in ("agreement_k", "agreement_c"):
-        assert [row[name] for row in pair] == ["agree", "spread"]
+        assert [row[name] for row in pair] == ["agree", "agree"]
     blind = next(row for row in recommended_rows_of(tmp_path, new, "y") if np.isnan(row["k"]))
-    assert blind["reason_k"].startswith("lscf (too short), ods (too short)")
+    assert blind["reason_k"] == "no method resolves k; LSCF pole: too short"
 
 
 def test_the_recommended_table_of_the_study_is_used(study):
@@ -205,20 +212,64 @@ def test_a_direction_that_is_not_driven_says_so(study):
     answer = equivalent(study, 3.0, 1.5e-4)
     assert answer.groups[0].k.value == pytest.approx(5.0e4) and answer.unresolved == []
     assert not answer.groups[1].moved
-    assert "along x\n  no values: the force does not move the supports in this" in as_text(answer)
+    assert "No values for 'all' along x: the force does not move the supports" in as_text(answer)
 
 
 def test_two_methods_are_enough_for_k(tmp_path, study_model):
-    """Where the shape gives none, k is the mean of the other two, and not all resolve it."""
-    blind = {"k_median": np.nan, "k_low": np.nan, "k_high": np.nan, "verdict": ""}
+    """Where the shape gives none, k is the mean of the other two, and the answer says so."""
+    blind = {"k_median": np.nan, "k_low": np.nan, "k_high": np.nan}
     rows = [row | blind if row["method"] == "ods" else row for row in summary_rows()]
     study = made_up_study(tmp_path, study_model, rows)
     answer = equivalent(study, 4.0, 1.0e-4)
     assert answer.groups[0].k.value == pytest.approx(1.01 * k_law(4.0e4))
-    assert "methods: agree" in as_text(answer)  # the verdict of the table itself
-    rows = [row | {"verdict": ""} for row in rows]
-    answer = equivalent(made_up_study(tmp_path, study_model, rows), 4.0, 1.0e-4)
-    assert "methods: not all resolve it" in as_text(answer)
+    assert "methods: two of three resolve it" in as_text(answer)
+    assert answer.unresolved == []
+    assert answer.warnings == [
+        "k of 'all' along y: two of three methods resolve k; deflection shape: no value"
+    ]
+
+
+@pytest.mark.parametrize("load", [4.0, 3.1])
+def test_a_disputed_value_is_taken_only_when_asked_for(tmp_path, study_model, load):
+    study, k = disputed_study(tmp_path, study_model), k_law(load / 1.0e-4)
+    answer = equivalent(study, load, 1.0e-4)
+    (group,) = answer.groups
+    assert not group.k.resolved and group.agreement_k == "differ" and answer.disputed
+    assert "the methods differ: LSCF pole" in answer.unresolved[0]
+    assert "k   no recommended value: the methods differ: LSCF pole" in as_text(answer)
+    taken = answer.anyway("broadband")
+    assert taken.groups[0].k.value == pytest.approx(1.02 * k)
+    assert taken.groups[0].c.value == pytest.approx(1.02e-3 * k, rel=0.15)  # c is linear in between
+    assert taken.unresolved == [] and not taken.disputed
+    assert taken.warnings[0].startswith(
+        "k of 'all' along y is that of the broadband PSD alone, taken anyway: the methods differ"
+    )
+    assert "WARNING: k of 'all' along y is that of the broadband PSD alone" in as_text(taken)
+    assert as_plain(taken)["warnings"] == taken.warnings
+    shape = answer.anyway("ods")
+    assert shape.groups[0].k.resolved and len(shape.unresolved) == 1  # a shape has no c
+    assert answer.anyway("peak_none") == answer
+
+
+def test_an_upper_bound_is_an_answer(tmp_path, study_model):
+    text = "k < 2.45 kN/m: the tube hardly touches, 0.3 % of the time"
+    row = dict.fromkeys(("k_N_per_m", "k_low", "k_high", "c_N_s_per_m", "c_low", "c_high"), np.nan)
+    row |= {"group": "all", "direction": "y", "reason_k": text, "reason_c": text, "flag": ""}
+    row |= {"agreement_k": "unresolved", "agreement_c": "unresolved"}
+    table = [
+        row | {"gap_m": 1.0e-4, "load_rms_N": load, "k_bound": bound, "contact_fraction": 0.003}
+        for load, bound in ((1.0, 2.45e3), (2.0, 2.6e3))
+    ]
+    study = made_up_study(tmp_path, study_model)
+    write_table(table, study / "equivalent.csv")
+    answer = equivalent(study, 1.0, 1.0e-4)
+    (group,) = answer.groups
+    assert group.bounded and group.bound == 2.45e3 and answer.unresolved == []
+    assert f"  {text}\n  c   no value: k has only a bound" in as_text(answer)
+    between = equivalent(study, 1.5, 1.0e-4).groups[0]
+    assert between.bound == 2.6e3 and between.reason_k.startswith("k < 2.6 kN/m: ")
+    assert answer.anyway("lscf") == answer
+    assert as_plain(answer)["groups"][0]["bound"] == 2.45e3
 
 
 def test_questions_without_sense_are_refused(study, tmp_path):

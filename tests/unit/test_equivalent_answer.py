@@ -7,7 +7,7 @@ import pytest
 
 from tests.made_up_study import GAPS, LOADS, equivalent_rows, summary_rows
 from vibroimpact.reports.equivalent_answer import answers, unmoved, with_places
-from vibroimpact.study.equivalent_table import NOT_MOVED
+from vibroimpact.study.reasons import NOT_MOVED
 
 
 def found(rows, gap, load, direction="y"):
@@ -36,17 +36,18 @@ def test_damping_that_differs_is_never_said_to_agree():
 def test_missing_value_names_the_methods_that_lack_it():
     row = found(answers(summary_rows(), None, "y"), 2.0e-4, 0.1)
     assert math.isnan(row.k.value) and not row.k.resolved
-    assert row.k.reason == "no value by LSCF pole and deflection shape and broadband PSD"
-    assert row.c.reason == "no value by LSCF pole and broadband PSD"
+    assert row.k.reason == row.c.reason == "no method resolves k; LSCF pole: no value"
 
 
-def test_one_missing_method_leaves_no_recommended_value():
+def test_one_missing_method_leaves_a_value_of_two():
     rows = summary_rows()
     for row in rows:
         if row["method"] == "ods" and row["load_rms_N"] == 10.0:
             row["k_median"] = np.nan
     row = found(answers(rows, None, "y"), 2.0e-4, 10.0)
-    assert row.k.agreement == "unresolved" and row.k.reason == "no value by deflection shape"
+    assert row.k.agreement == "partial"
+    assert row.k.reason == "two of three methods resolve k; deflection shape: no value"
+    assert row.k.apart == pytest.approx(0.05 / 1.05)
 
 
 def test_table_of_recommended_values_is_taken_as_it_is():

@@ -87,6 +87,9 @@ def test_rows_have_the_columns_of_the_consistency_table():
         "quality",
         "reason",
         "flag",
+        "k_bound",
+        "contact_fraction",
+        "caution",
     ]
     assert (
         [row["method"] for row in rows] == list(METHODS)

@@ -449,3 +449,61 @@ def test_unresolved_study_still_has_its_figures(config, study, tmp_path):
     for sheet in drawn:
         sheet.save(tmp_path)
         assert (tmp_path / f"{sheet.name}.png").is_file()
+
+
+def test_titles_say_what_the_data_are(sheets):
+    titles = {name: sheet.figure.get_suptitle() for name, sheet in sheets[0].items()}
+    assert titles["figure_05_overlay"] == "Synthetic campaign over simulation"
+    assert re.fullmatch(r"k of the gaps at equal load / gap: within \d+ %", titles["collapse"]) or (
+        titles["collapse"] == "Equivalent support against load / gap"
+    )
+    assert not [title for title in titles.values() if "independent" in title or "All gaps" in title]
+
+
+def test_collapse_is_told_by_a_number_or_not_at_all(study):
+    rows = [row | {"k_N_per_m": 4.0 * row["load_over_gap"], "flag": ""} for row in study[2]]
+    far = [row | {"k_N_per_m": row["k_N_per_m"] * (1.0 + (row["gap_m"] < 1e-4))} for row in rows]
+    loads = [row | {"load_over_gap": row["load_rms_N"] / row["gap_m"]} for row in far]
+    one = [row for row in rows if row["gap_m"] > 1e-4]
+    assert equivalent._collapse_title(one) == "Equivalent support against load / gap"
+    assert equivalent._collapse_title(rows).endswith("within 0 %")
+    assert equivalent._collapse_title(loads).endswith("within 100 %")
+
+
+def test_a_missed_peak_is_told_by_its_factor():
+    frequency = np.linspace(5.0, 99.0, 800)
+
+    def spectrum(second):
+        peaks = [
+            1.0 / ((1.0 - (frequency / f) ** 2) ** 2 + (0.1 * frequency / f) ** 2)
+            for f in (21.0, 55.0)
+        ]
+        return peaks[0] + second * peaks[1]
+
+    assert broadband.peak_factor(spectrum(0.1), spectrum(0.1)) == 1.0
+    assert broadband.peak_factor(spectrum(0.2), spectrum(0.1)) == pytest.approx(2.0, rel=0.03)
+    assert broadband.peak_factor(spectrum(0.1), spectrum(0.3)) == pytest.approx(3.0, rel=0.03)
+    assert broadband.peak_factor(np.ones(800), np.ones(800)) == 1.0
+
+
+def test_the_chart_shows_the_main_peak_and_its_pole(sheets, config):
+    axes = next(iter(sheets[0]["figure_09_stabilisation"].axes.values()))
+    found = re.search(r"([\d.]+) Hz, stable in (\d+) of (\d+) orders", axes.get_title(loc="left"))
+    low, high = config.identification.peak_search_Hz
+    assert low <= axes.get_xlim()[0] < float(found[1]) < axes.get_xlim()[1] <= high
+    assert axes.get_xlim()[1] < 45.0  # of the free tube's second mode
+    assert 0 < int(found[2]) <= int(found[3])
+
+
+def test_no_residual_is_drawn_below_round_off(sheets):
+    axes = sheets[0]["energy_balance"].axes["residuals"]
+    assert axes.get_ylim()[0] > 1e-13
+
+
+def test_empty_axes_say_why_in_lines_that_fit():
+    sheet = Sheet("empty", "Nothing", "A caption.")
+    sheet.note(sheet.axes["main"], "No method resolves it. " * 4, "load_rms_N", "k_N_per_m")
+    (text,) = sheet.axes["main"].texts
+    assert max(len(line) for line in text.get_text().splitlines()) <= 26
+    rows = [{"method": "lscf", "reason": ""}, {"method": "ods", "reason": "no peak"}]
+    assert equivalent._why_empty(rows) == "No method resolves it. no peak"

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibroimpact.study.equivalent_table import NOT_MOVED
+from vibroimpact.study.reasons import NOT_MOVED
 from vibroimpact.study.run_report import failure_text, headline, success_text
 
 
@@ -43,27 +43,29 @@ Shutting down, this might take some time.
 
 def test_headline_is_of_the_largest_gap():
     assert headline(ROWS) == (
-        "k from 1.2e4 N/m at 2 N to 1.1e6 N/m at 20 N (gap 0.29 mm). The methods agree on k in 2 of"
-        " 4 pairs of load and gap"
+        "k from 1.2e4 N/m at 2 N to 1.1e6 N/m at 20 N (gap 0.29 mm). 2 of 3 pairs of load and gap"
+        " that the methods resolve agree on k within 25 %; in 1 they are more than 25 % apart; in 1"
+        " k is not resolved"
     )
 
 
 def test_headline_of_one_resolved_load_names_it_once():
-    assert headline(ROWS[:2]).startswith("k = 1.1e6 N/m at 20 N (gap 0.29 mm). The methods agree")
+    assert headline(ROWS[:2]).startswith("k = 1.1e6 N/m at 20 N (gap 0.29 mm). 1 of 1 pairs")
 
 
 def test_headline_says_when_nothing_is_resolved():
     assert headline(ROWS[:1]) == (
-        "no load at which k is resolved (gap 0.29 mm). The methods agree on k in 0 of 1 pairs of"
-        " load and gap"
+        "no load at which k is resolved (gap 0.29 mm). The methods resolve k in none of 1 pairs of"
+        " load and gap; in 1 k is not resolved"
     )
 
 
 def test_headline_names_each_group_of_supports():
     groups = [row(3e-4, 15.0, 4.3e3, "agree", "plate"), row(3e-4, 15.0, 5.2e5, "spread", "bars")]
     assert headline(groups) == (
-        "plate in y: k = 4.3e3 N/m at 15 N; bars in y: k = 5.2e5 N/m at 15 N (gap 0.3 mm). The"
-        " methods agree on k in 1 of 2 cases"
+        "plate in y: k = 4.3e3 N/m at 15 N; bars in y: k = 5.2e5 N/m at 15 N (gap 0.3 mm). 1"
+        " of 2 cases that the methods resolve agree on k within 25 %; in 1 they are more than 25 %"
+        " apart"
     )
 
 

@@ -78,10 +78,10 @@ def test_texts_are_on_the_page_and_not_on_one_another(model, kind):
 def test_numbers_of_the_summary_are_those_of_the_study(model):
     first, second = summary_pages(MadeUpStudy(model).content)
     told = [text for text, *_ in boxes(first)]
-    for value in ("500", "428 to 578", "750", "differ", "not resolved"):
+    for value in ("500", "428 to 578", "750", "over 25 % apart", "not resolved"):
         assert value in told
     below = [text for text, *_ in boxes(second)]
-    for value in ("405", "250", "root start", "yes", "c: differ", "0a1b"):
+    for value in ("405", "250", "root start", "yes", "c: over 25 % apart", "0a1b"):
         assert value in below
     # All three loads fit: at 1 N the largest force on the left is 40 and 50 N, at both gaps.
     assert below.count("45") == 2

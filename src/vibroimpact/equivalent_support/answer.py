@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-# Reason of a direction in which a study says nothing because its force does not move it.
-NOT_MOVED = "the force does not move the supports in this direction"
+from vibroimpact.identify.method_names import method_name
+from vibroimpact.study.reasons import NOT_MOVED
 
 
 class EquivalentError(Exception):
@@ -44,9 +44,12 @@ class GroupAnswer:
     group, supports: name of the group, and of the supports that each have this k and c.
     direction: transverse direction, such as "y".
     k, c: recommended values, N/m and N s/m per support.
-    agreement_k, agreement_c: of the compared methods: "agree", "spread", or "unresolved" where not
-        all of them resolve the value; "" for an estimate.
-    reason_k, reason_c: why there is no value, or "".
+    agreement_k, agreement_c: of the compared methods, one of method_agreement.VERDICTS; "" for an
+        estimate.
+    reason_k, reason_c: why there is no value, or what is to be known of it; mostly "".
+    bound: N/m, what k is below where it does not differ from 0; NaN otherwise.
+    flag: what makes the values of the study doubtful, or "".
+    anyway: the one method whose value was asked for where there is no recommended one, or "".
     secant_k, secant_c: of the contact forces themselves, NaN where not known.
     methods: what each method says.
     how: where the values come from, a sentence.
@@ -63,6 +66,9 @@ class GroupAnswer:
     agreement_c: str = ""
     reason_k: str = ""
     reason_c: str = ""
+    bound: float = np.nan
+    flag: str = ""
+    anyway: str = ""
     secant_k: float = np.nan
     secant_c: float = np.nan
     methods: tuple[MethodAnswer, ...] = ()
@@ -73,6 +79,19 @@ class GroupAnswer:
     def moved(self) -> bool:
         """Whether the force of the study moves the supports in this direction."""
         return self.reason_k != NOT_MOVED
+
+    @property
+    def bounded(self) -> bool:
+        """Whether the answer is an upper bound of k."""
+        return bool(np.isfinite(self.bound)) and not self.k.resolved
+
+    @property
+    def parts(self) -> tuple[tuple[str, Span, str, str], ...]:
+        """The (name, value, agreement, reason) of k and of c."""
+        return (
+            ("k", self.k, self.agreement_k, self.reason_k),
+            ("c", self.c, self.agreement_c, self.reason_c),
+        )
 
 
 @dataclass(frozen=True)
@@ -96,21 +115,61 @@ class Answer:
 
     @property
     def unresolved(self) -> list[str]:
-        """Return a sentence for every k and c that is not resolved where the force moves."""
+        """Return a sentence for every k and c without a value where the force moves.
+
+        An upper bound of k is an answer.
+        """
         sentences = []
         for group in self.groups:
             missing = {
-                name: reason
-                for name, span, reason in (
-                    ("k", group.k, group.reason_k),
-                    ("c", group.c, group.reason_c),
-                )
-                if group.moved and not span.resolved
+                name: f"{'no recommended value' if word == 'differ' else 'not resolved'}: {reason}"
+                for name, span, word, reason in group.parts
+                if group.moved and not span.resolved and not group.bounded
             }
             if len(missing) == 2 and missing["c"] == missing["k"]:
                 missing = {"k and c": missing["k"]}
             sentences += [
-                f"{name} of '{group.group}' along {group.direction}: not resolved: {reason}"
-                for name, reason in missing.items()
+                f"{name} of '{group.group}' along {group.direction}: {text}"
+                for name, text in missing.items()
             ]
         return sentences
+
+    @property
+    def warnings(self) -> list[str]:
+        """Return a sentence for every value that the methods dispute, and for every flag."""
+        sentences = []
+        for group in self.groups:
+            place = f"of '{group.group}' along {group.direction}"
+            sentences += [f"the case {place} has a flag: {group.flag}"] if group.flag else []
+            for name, span, agreement, reason in group.parts:
+                if not span.resolved or not reason:
+                    continue
+                taken = group.anyway and agreement in ("differ", "unresolved")
+                value = f"{name} {place}"
+                if taken:
+                    value += f" is that of the {method_name(group.anyway)} alone, taken anyway"
+                sentences.append(f"{value}: {reason}")
+        return sentences
+
+    @property
+    def disputed(self) -> bool:
+        """Whether methods differ on a value that is missing for this reason."""
+        return any(
+            agreement == "differ" and not span.resolved
+            for group in self.groups
+            for _, span, agreement, _ in group.parts
+        )
+
+    def anyway(self, method: str) -> Answer:
+        """Return the answer with the values of one method where there is no recommended one."""
+        return replace(self, groups=tuple(_with_values_of(group, method) for group in self.groups))
+
+
+def _with_values_of(group: GroupAnswer, method: str) -> GroupAnswer:
+    """Return a group's answer with the values of a method where it has none and no bound."""
+    own = next((item for item in group.methods if item.method == method), None)
+    if own is None or group.bounded or (group.k.resolved and group.c.resolved):
+        return group
+    k = group.k if group.k.resolved else own.k
+    c = group.c if group.c.resolved or not k.resolved else own.c
+    return replace(group, k=k, c=c, anyway=method)

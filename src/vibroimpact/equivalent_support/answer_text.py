@@ -9,6 +9,7 @@ from typing import Any
 
 from vibroimpact.records import plain_values
 from vibroimpact.study.method_agreement import COMPARED
+from vibroimpact.study.reasons import NOT_MOVED, UNITS
 
 from .answer import Answer, GroupAnswer, Span
 
@@ -33,9 +34,16 @@ COLUMNS = (
     "reason_k",
     "reason_c",
     "how",
+    "k_bound",
+    "flag",
+    "anyway",
 )
-ABSENT = "unresolved"
-AGREEMENTS = {"unresolved": "not all resolve it"}
+AGREEMENTS = {
+    "spread": "more than 25 % apart",
+    "differ": "they differ",
+    "unresolved": "not resolved",
+}
+PARTIAL = {"k": "two of three resolve it", "c": "one of two resolves it"}
 
 
 def as_text(answer: Answer) -> str:
@@ -46,28 +54,33 @@ def as_text(answer: Answer) -> str:
         f"{what} '{answer.study}': equivalent support at {answer.load_rms_N:g} N RMS and a gap of"
         f" {1e3 * answer.gap_m:.4g} mm{level if answer.homogeneous else ''}"
     )
-    blocks = [head, *(_group_text(group, answer.homogeneous) for group in answer.groups)]
-    return "\n\n".join([*blocks, *answer.notes])
+    moved = [group for group in answer.groups if group.moved]
+    blocks = [head, *(_group_text(group, answer.homogeneous) for group in moved)]
+    still = [
+        f"'{group.group}' along {group.direction}" for group in answer.groups if not group.moved
+    ]
+    blocks += [f"No values for {', '.join(still)}: {NOT_MOVED}."] if still else []
+    warnings = [f"WARNING: {sentence}." for sentence in answer.warnings]
+    return "\n\n".join([*blocks, *warnings, *answer.notes])
 
 
 def _group_text(group: GroupAnswer, homogeneous: bool) -> str:
     """Return the block of one group."""
     place = f"Group '{group.group}' ({', '.join(group.supports)}), along {group.direction}"
-    if not group.moved:
-        return f"{place}\n  no values: {group.reason_k}"
     lines = [f"{place}; values per support"]
-    for name, unit, span, agreement, reason in (
-        ("k", "N/m", group.k, group.agreement_k, group.reason_k),
-        ("c", "N s/m", group.c, group.agreement_c, group.reason_c),
-    ):
-        said = f"   methods: {AGREEMENTS.get(agreement, agreement)}" if agreement else ""
+    for name, span, agreement, reason in group.parts:
+        words = PARTIAL[name] if agreement == "partial" else AGREEMENTS.get(agreement, agreement)
+        said = f"   methods: {words}" if agreement else ""
         if span.resolved:
             interval = f"{span.low:.3g} to {span.high:.3g}"
-            value = f"{name} = {span.value:.4g} {unit}"
+            value = f"{name} = {span.value:.4g} {UNITS[name]}"
             lines.append(f"  {value:26} {interval:24}{said}".rstrip())
+        elif group.bounded:
+            lines.append(f"  {reason}" if name == "k" else "  c   no value: k has only a bound")
         else:
             same = name == "c" and not group.k.resolved and reason == group.reason_k
-            lines.append(f"  {name}   {ABSENT}{', as k' if same else f': {reason}'}")
+            word = "no recommended value" if agreement == "differ" else "unresolved"
+            lines.append(f"  {name}   {word}{', as k' if same else f': {reason}'}")
     if group.methods:
         lines += ["", f"  {'method':26} {'k [N/m]':34} c [N s/m]"]
         lines += [
@@ -129,6 +142,9 @@ def table_rows(answer: Answer) -> list[dict[str, Any]]:
                     group.reason_k,
                     group.reason_c,
                     group.how,
+                    group.bound,
+                    group.flag,
+                    group.anyway,
                 ),
                 strict=True,
             )
@@ -147,6 +163,6 @@ def as_csv(answer: Answer) -> str:
 
 
 def as_plain(answer: Answer) -> dict[str, Any]:
-    """Return an answer as JSON knows values; what is not resolved is null."""
-    plain: dict[str, Any] = plain_values(asdict(answer))
+    """Return an answer as JSON knows values, with its warnings; what is not resolved is null."""
+    plain: dict[str, Any] = plain_values(asdict(answer) | {"warnings": answer.warnings})
     return plain

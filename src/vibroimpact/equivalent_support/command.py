@@ -51,6 +51,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="estimate from a law, without a simulation; needs --config and no study",
     )
+    parser.add_argument(
+        "--anyway",
+        choices=("lscf", "ods", "broadband"),
+        metavar="METHOD",
+        help="where the methods differ or too few resolve a value, take that of one of them (lscf,"
+        " ods, broadband); a warning stands at the head of every export",
+    )
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="print JSON in place of the text")
     form.add_argument("--csv", action="store_true", help="print CSV in place of the text")
@@ -90,7 +97,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command. Return 1 where there is no answer, or a k or c is not resolved."""
+    """Run the command. Return 1 where there is no answer, or a k or c has no value and no bound."""
     from vibroimpact.config.problems import ConfigError
     from vibroimpact.records import RecordError
 
@@ -98,6 +105,7 @@ def run(options: argparse.Namespace) -> int:
 
     try:
         answer, model = _answer(options)
+        answer = answer.anyway(options.anyway) if options.anyway else answer
         left_out = _write_export(options, answer, model) if options.export else ()
     except (EquivalentError, ConfigError, RecordError, ValueError) as error:
         print(error, file=sys.stderr)
@@ -106,6 +114,8 @@ def run(options: argparse.Namespace) -> int:
     missing = [*answer.unresolved, *(line for line in left_out if line not in answer.unresolved)]
     for sentence in missing:
         print(sentence, file=sys.stderr)
+    if answer.disputed:
+        print("To take the value of one method: --anyway lscf, ods or broadband", file=sys.stderr)
     return 1 if missing else 0
 
 

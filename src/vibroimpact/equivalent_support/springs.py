@@ -38,11 +38,12 @@ class PointSpring:
 class SpringSet:
     """All springs of an answer, and what was left out.
 
-    notes: sentences for the head of a file.
+    warnings: sentences that no reader of a file may miss. notes: more for its head.
     left_out: sentences for what is not resolved and therefore not among the springs.
     """
 
     springs: tuple[PointSpring, ...]
+    warnings: tuple[str, ...]
     notes: tuple[str, ...]
     left_out: tuple[str, ...]
 
@@ -60,7 +61,10 @@ def point_springs(
     across: "same" gives a transverse direction that the force of the study does not move the k and
         c of the other one; "none" leaves it free. Parallel stops act along their normal alone.
 
-    Raises EquivalentError where no k is resolved, or the structure has no positions in space.
+    Where k has only an upper bound there is no spring, and a note says so.
+
+    Raises EquivalentError where no k is resolved or bounded, or the structure has no positions in
+    space.
     """
     _require_positions(model)
     by_support: dict[str, list[GroupAnswer]] = {name: [] for name in model.support_names}
@@ -73,11 +77,22 @@ def point_springs(
         for spring in _springs_of_support(model, number, by_support[name], points, across)
     ]
     kept = tuple(spring for spring in springs if spring.k != (None, None))
-    bare = [name for name in model.support_names if name not in {item.support for item in kept}]
+    bounded = {name for group in answer.groups if group.bounded for name in group.supports}
+    there = {item.support for item in kept} | bounded
+    bare = [name for name in model.support_names if name not in there]
     left_out = [*answer.unresolved, *(f"support {name} has no spring" for name in bare)]
-    if not kept:
+    if not kept and not bounded:
         raise EquivalentError(f"nothing to export: {'; '.join(left_out)}")
-    return SpringSet(kept, _notes(answer, across), tuple(left_out))
+    warnings = [*answer.warnings, *(_without_spring(group) for group in answer.groups)]
+    return SpringSet(kept, tuple(filter(None, warnings)), _notes(answer, across), tuple(left_out))
+
+
+def _without_spring(group: GroupAnswer) -> str:
+    """Return that the supports of a group have no spring because k has only an upper bound."""
+    if not group.bounded:
+        return ""
+    supports = ", ".join(group.supports)
+    return f"no spring along {group.direction} at {supports}: per support {group.reason_k}"
 
 
 def _require_positions(model: ModalModel) -> None:
@@ -150,9 +165,12 @@ def _notes(answer: Answer, across: str) -> tuple[str, ...]:
         f" of {1e3 * answer.gap_m:.6g} mm.",
     ]
     for group in filter(lambda group: group.moved, answer.groups):
+        if group.bounded:
+            continue
         notes.append(
             f"Group {group.group} ({', '.join(group.supports)}) along {group.direction}, per"
-            f" support: k {_span_text(group.k, 'N/m')}; c {_span_text(group.c, 'N s/m')}."
+            f" support: k {_span_text(group.k, 'N/m')};"
+            f" c {_span_text(group.c, 'N s/m')}."
             f" {group.how[:1].upper()}{group.how[1:]}."
         )
     if across == "same":

@@ -14,6 +14,8 @@ from vibroimpact.linear.support_groups import acting_directions
 from vibroimpact.records import RecordError
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.reduction.model_file import read_model
+from vibroimpact.study.method_agreement import VERDICTS
+from vibroimpact.study.reasons import bound_text
 
 from .answer import NOT_MOVED, Answer, EquivalentError, GroupAnswer, MethodAnswer, Span
 from .homogeneity import effects_with_a_scale
@@ -198,6 +200,11 @@ def _group_answer(
     recommended, summary = tables
     k = asked.read(recommended, "k", ("k", "k_low", "k_high"))
     c = asked.read(recommended, "c", ("c", "c_low", "c_high"))
+    reasons = {"k": _reason(k, "k"), "c": _reason(c, "c")}
+    bound = _bound(k)
+    if np.isfinite(bound):
+        touching = max(row["contact_fraction"] for row in k.rows)
+        reasons = dict.fromkeys(reasons, bound_text(bound, touching))
     secant = {
         name: asked.read(recommended, name, (f"secant_{name}",) * 3).span.value
         for name in ("k", "c")
@@ -210,8 +217,10 @@ def _group_answer(
         c=c.span,
         agreement_k=_agreement(k, "k"),
         agreement_c=_agreement(c, "c"),
-        reason_k=_reason(k, "k"),
-        reason_c=_reason(c, "c"),
+        reason_k=reasons["k"],
+        reason_c=reasons["c"],
+        bound=bound,
+        flag=next((row["flag"] for row in k.rows if row["flag"]), ""),
         secant_k=secant["k"],
         secant_c=secant["c"],
         methods=tuple(
@@ -232,25 +241,44 @@ def _of_method(asked: _Asked, summary: Rows, method: str, name: str) -> Span:
 
 
 def _agreement(reading: Reading, name: str) -> str:
-    """Return the weakest agreement of the rows behind a value."""
+    """Return the weakest agreement of the rows behind a value, or of those that lack it."""
     said = {row[f"agreement_{name}"] for row in reading.rows}
-    if not reading.span.resolved or "unresolved" in said:
-        return "unresolved"
-    return "agree" if said == {"agree"} else "spread"
+    if not reading.span.resolved:
+        return "differ" if "differ" in said else "unresolved"
+    return max(said, key=VERDICTS.index, default="unresolved")
 
 
 def _reason(reading: Reading, name: str) -> str:
-    """Return why there is no value: the reason of the first case of the study that lacks it."""
+    """Return why there is no value, from the first case of the study that lacks it; where there is
+    one, what is to be known of it, from the case where the methods agree least.
+    """
+    if reading.span.resolved:
+        row = max(reading.rows, key=lambda row: VERDICTS.index(row[f"agreement_{name}"]))
+        return str(row[f"reason_{name}"])
     lacking = [row for row in reading.rows if not np.isfinite(row[name])]
-    if reading.span.resolved or not lacking:
+    if not lacking:
         return ""
+    lacking.sort(key=lambda row: row[f"agreement_{name}"] != "differ")
     text = lacking[0][f"reason_{name}"] or "no value in the study"
     if text.startswith(NOT_MOVED):
         return NOT_MOVED
+    if len(reading.rows) == 1:
+        return str(text)
     place = f"{lacking[0]['load_rms_N']:.3g} N at {1e3 * lacking[0]['gap_m']:.4g} mm"
     others = len(lacking) - 1
     more = f", and likewise {others} more case{'s' if others > 1 else ''} beside it"
     return f"{text} ({place}{more if others else ''})"
+
+
+def _bound(reading: Reading) -> float:
+    """Return what k (N/m) is below at a level: the largest bound or value of the cases beside it.
+
+    NaN where k is resolved, or a case has neither.
+    """
+    if reading.span.resolved or not reading.rows:
+        return np.nan
+    ends = [row["k_bound"] if np.isnan(row["k"]) else row["k_high"] for row in reading.rows]
+    return float(np.max(ends))
 
 
 def _how(asked: _Asked, reading: Reading, rows: Rows) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import repeat
 from pathlib import Path
@@ -25,6 +26,7 @@ from vibroimpact.whole_file import whole_file
 from .style import label_of, shown, tidy_log_axes
 
 Column = tuple[str, ArrayLike]  # name of a column, values (point,) in SI
+NOTE_WIDTH = 26  # characters of a line in empty axes
 DIGITS = 7  # significant digits in the CSV
 WIDTH_IN, PNG_DPI = 7.6, 160
 
@@ -202,7 +204,8 @@ class Sheet:
 
     def note(self, axes: Axes, text: str, x_column: str, y_column: str) -> None:
         """Write into empty axes why they are empty, and label them."""
-        axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center")
+        lines = textwrap.fill(text, NOTE_WIDTH)
+        axes.text(0.5, 0.5, lines, transform=axes.transAxes, ha="center", va="center", fontsize=8)
         self._label(axes, x_column, y_column)
 
     def legend(self, axes: Axes, **style: Any) -> None:

@@ -19,6 +19,7 @@ FREQUENCY_ERROR = 0.003
 # A stiffness differs from zero when it exceeds two standard errors of the model plus four of
 # chance. Four, because a study has hundreds of cases and at k = 0 none of them may claim a support.
 MODEL_SIGMAS, CHANCE_SIGMAS = 2.0, 4.0
+BOUND_SIGMAS = 2.0  # of chance, above the value found: k is below that where it does not differ
 # Relative standard error of k, of the model and of chance together.
 WEAK_ABOVE, UNRESOLVED_ABOVE = 0.25, 0.5
 EDGE = 0.05  # of ln k: a value so near the edge of the range that was searched is the edge's
@@ -33,7 +34,11 @@ class Estimate:
     frequency, damping_ratio: of the pole behind the estimate (Hz, undamped); NaN for none.
     quality: ok, weak or unresolved. It judges k with the error of the model included.
     note: the reason for the quality.
-    flag: what makes the estimate doubtful beyond its standard error, see guards; mostly empty.
+    flag: what makes the estimate doubtful beyond its standard error, see guards; mostly empty. A
+        flagged estimate takes no part in what a study recommends.
+    k_bound: N/m, that k is below where it does not differ from 0; else NaN.
+    caution: what else is to be known of the case, whatever the method.
+    contact_fraction: share of time in contact of the support that is touched most; NaN if unknown.
     group, direction: the supports that share k and c, and the direction that they act in.
     """
 
@@ -47,6 +52,9 @@ class Estimate:
     quality: str = "ok"
     note: str = ""
     flag: str = ""
+    k_bound: float = np.nan
+    caution: str = ""
+    contact_fraction: float = np.nan
     group: str = ""
     direction: str = ""
 
@@ -93,8 +101,9 @@ def grade(
     # model's error does.
     chance = estimate.k_standard_error * min(1.0, model_error_at_zero / model_error)
     floor = MODEL_SIGMAS * model_error_at_zero + CHANCE_SIGMAS * chance
-    reason = ""
+    reason, bound = "", np.nan
     if k < floor:
+        bound = max(k, 0.0) + MODEL_SIGMAS * model_error_at_zero + BOUND_SIGMAS * chance
         reason = f"k = {k:.3g} N/m does not differ from 0 (least {floor:.3g})"
     elif not stiffness_range[0] <= k <= stiffness_range[1]:
         reason = f"k = {k:.3g} N/m is outside the range"
@@ -103,7 +112,8 @@ def grade(
     elif error > UNRESOLVED_ABOVE * k:
         reason = f"standard error {error / k:.0%} of k"
     if reason:
-        return unresolved(estimate.method, joined(reason, estimate.note), *pole)
+        empty = unresolved(estimate.method, joined(reason, estimate.note), *pole)
+        return replace(empty, k_bound=bound)
     if error > WEAK_ABOVE * k:
         estimate = mark_weak(estimate, f"standard error {error / k:.0%} of k")
     if estimate.c_standard_error > c_error_limit:
@@ -165,6 +175,9 @@ def table_rows(estimates: Iterable[Estimate], attributes: Mapping[str, Any]) -> 
                 "quality": values["quality"],
                 "reason": values["note"] if reason_needed(estimate) else "",
                 "flag": values["flag"],
+                "k_bound": values["k_bound"],
+                "contact_fraction": values["contact_fraction"],
+                "caution": values["caution"],
             }
         )
     return rows

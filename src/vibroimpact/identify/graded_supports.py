@@ -13,6 +13,7 @@ import numpy as np
 from vibroimpact.linear.supported_structure import SupportedStructure
 
 from .estimate import (
+    BOUND_SIGMAS,
     CHANCE_SIGMAS,
     FREQUENCY_ERROR,
     MODEL_SIGMAS,
@@ -75,7 +76,10 @@ def graded_supports(
         chance = float(np.sqrt(found.covariance[index, index]))
         floor = MODEL_SIGMAS * np.sqrt(max(error**2 - chance**2, 0.0)) + CHANCE_SIGMAS * chance
         reason = _why_unresolved(k, error, search)
+        bound = np.nan
         if not reason and floor > saturation[index]:
+            margin = floor - (CHANCE_SIGMAS - BOUND_SIGMAS) * chance
+            bound = float(k * (1.0 + margin / saturation[index]))
             least = k * floor / saturation[index]
             reason = f"k = {k:.3g} N/m does not differ from 0 (least {least:.3g})"
         if not reason and error > UNRESOLVED_ABOVE:
@@ -84,7 +88,12 @@ def graded_supports(
             )
         if reason:
             estimate = replace(
-                estimate, k=np.nan, k_standard_error=np.nan, quality="unresolved", note=reason
+                estimate,
+                k=np.nan,
+                k_standard_error=np.nan,
+                quality="unresolved",
+                note=reason,
+                k_bound=bound,
             )
             estimates.append(estimate)
             continue

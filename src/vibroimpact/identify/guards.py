@@ -1,7 +1,8 @@
 """What makes an estimate doubtful beyond its standard error: the texts of the column `flag`.
 
 A flag does not change a value, but for a run whose energy balance is open: what was identified from
-it is not resolved.
+it is not resolved. A flagged estimate takes no part in what a study recommends. The column
+`caution` tells what is to be known of a case whatever the method.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ FEWEST_AVERAGES = 8.0
 STIFFEST_CHECKED = max(STIFFNESSES)  # N/m, of the comparison of reduced with full frequencies
 FLANKS = LEVELS["peak_25th"]  # the part of a peak that has a weight in every fit
 SAME_POLE = 1.0e-3  # relative; the inverse is exact, so that a larger difference is another mode
+GUARDED = ("contact_fraction", "stress_flag", "stress_peak")  # of a record, where it has them
 FROM_POLES = (*PEAK_METHODS, "lscf")
 FROM_SPECTRA = (*FROM_POLES, "ods", "broadband")
 
@@ -35,25 +37,52 @@ def guarded(
     record: xr.Dataset,
     averages: float,
     search_Hz: Sequence[float],
+    unusable: str = "",
 ) -> list[Estimate]:
-    """Return the estimates of one case with the flags that any method can have.
+    """Return the estimates of one case with the flags and cautions that any method can have.
 
     record: with the residuals of the energy balance, where it has them.
     averages: effective degrees of freedom of a bin.
     search_Hz: where the main peak was looked for.
+    unusable: which channels the methods can not use; a reason for what is not resolved.
     """
     energy = energy_flag(record)
-    few = few_averages(averages)
+    caution = joined(few_averages(averages), over_stress(record))
     found = []
     for estimate in estimates:
         if estimate.method in FROM_SPECTRA:
-            estimate = flagged(estimate, few)
+            if estimate.quality == "unresolved":
+                estimate = replace(estimate, note=joined(unusable, estimate.note))
         if estimate.method in FROM_POLES:
             estimate = flagged(estimate, outside_search(estimate.frequency, search_Hz))
         if estimate.method != "statistical_linearisation":  # it does not see the record
             estimate = _without_value(estimate, energy)
+        touching = contact_fraction(record, estimate.group)
+        estimate = replace(estimate, caution=caution, contact_fraction=touching)
         found.append(flagged(estimate, beyond_checked(estimate.k)))
     return found
+
+
+def contact_fraction(record: xr.Dataset, group: str) -> float:
+    """Return the share of time in contact of the support of a group that is touched most.
+
+    NaN where the record does not have it.
+    """
+    if "contact_fraction" not in record:
+        return np.nan
+    values, names = record["contact_fraction"].values, group.split("+")
+    if "support" in record.coords:
+        inside = np.isin(record["support"].values.astype(str), names)
+        values = values[inside] if inside.any() else values
+    return float(values.max(initial=0.0))
+
+
+def over_stress(record: xr.Dataset) -> str:
+    """Return that the peak stress of a record is above the limit of the study, or nothing."""
+    if not record.get("stress_flag", 0):
+        return ""
+    peak = 1e-6 * float(record["stress_peak"].max())
+    return f"the peak stress, {peak:.0f} MPa, is above record.stress_limit_Pa"
 
 
 def _without_value(estimate: Estimate, reason: str) -> Estimate:

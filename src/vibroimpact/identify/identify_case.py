@@ -23,7 +23,7 @@ from .case_estimates import (
     estimate_from_shape,
 )
 from .estimate import Estimate
-from .guards import guarded
+from .guards import GUARDED, guarded
 from .identify_supports import SupportsCase, estimates_of_supports
 from .ods import DeflectionShape, ShapeMatch, deflection_shape, match_shape
 from .operational_pole import OperationalPole, PoleSearch, operational_pole
@@ -31,10 +31,11 @@ from .peak import LEVELS, PeakFit, find_peak, fit_peak
 from .reference_tube import Bins, ReferenceTube, Sensors
 from .secant import MOMENTS
 from .segment_scatter import effective_duration
+from .solvable import or_none, unusable_channels
 from .supports_tube import SupportsTube
 
 # Variables of the two files that identify_case uses.
-RECORD_READ = (*MOMENTS, *ENERGY_RESIDUALS)
+RECORD_READ = (*MOMENTS, *ENERGY_RESIDUALS, *GUARDED)
 SPECTRA_READ = (
     "sensor_spectra_re",
     "sensor_spectra_im",
@@ -60,7 +61,8 @@ def identify_case(
     """
     estimates, curves = _identify(config, model, record, spectra)
     averages, search_Hz = float(spectra["effective_averages"]), config.identification.peak_search_Hz
-    return guarded(estimates, record, averages, search_Hz), curves
+    unusable = unusable_channels(spectra)
+    return guarded(estimates, record, averages, search_Hz, unusable), curves
 
 
 def _identify(
@@ -73,12 +75,12 @@ def _identify(
     tube = reference_tube(config, model, spectra)
     case = CaseSpectra(spectra, tube)
     peaks = {
-        method: case.fit_main_peak(level, config.identification.peak_search_Hz)
+        method: or_none(case.fit_main_peak, level, config.identification.peak_search_Hz)
         for method, level in LEVELS.items()
     }
-    pole = case.operational_pole(config.identification)
-    shape = case.shape(peaks["peak_25th"])
-    broad = case.broadband()
+    pole = or_none(case.operational_pole, config.identification)
+    shape = or_none(case.shape, peaks["peak_25th"])
+    broad = or_none(case.broadband)
     estimates = [estimate_from_peak(method, fit, tube) for method, fit in peaks.items()]
     estimates += [
         estimate_from_operational_pole(pole, tube),

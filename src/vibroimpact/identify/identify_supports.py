@@ -23,6 +23,7 @@ from .operational_pole import OperationalPole, PoleSearch, operational_pole
 from .peak import LEVELS, PeakFit, find_peak, fit_peak
 from .pole_step import PoleStep, step_to_pole
 from .segment_scatter import effective_duration
+from .solvable import or_none
 from .support_fit import Start, SupportSearch, inverse_information
 from .supports_by_shapes import ShapeComparison, ShapesFit, block_shapes
 from .supports_by_spectra import CoarseCost, SpectraComparison, SpectraFit
@@ -63,15 +64,16 @@ class SupportsCase:
 
     def fit(self) -> SupportsResult:
         """Return the SupportsResult."""
-        shapes = self.by_shapes()
-        spectra = self.by_spectra(shapes)
+        shapes = or_none(self.by_shapes)
+        spectra = or_none(self.by_spectra, shapes)
         peaks: dict[str, PeakFit | None] = dict.fromkeys(LEVELS)
         pole = None
         if spectra is not None:
             values = spectra.values
             other = self.tube.other_modes(values.k, values.c)
             for method, level in LEVELS.items():
-                peaks[method] = fit_peak(
+                peaks[method] = or_none(
+                    fit_peak,
                     self.tube.frequency,
                     self.psd,
                     self.tube.kernel,
@@ -81,8 +83,8 @@ class SupportsCase:
                     self.averages,
                     self.segments,
                 )
-            pole = self.operational_pole(spectra)
-        shape = self.main_shape(peaks["peak_25th"])
+            pole = or_none(self.operational_pole, spectra)
+        shape = or_none(self.main_shape, peaks["peak_25th"])
         return SupportsResult(peaks, pole, shape, spectra, shapes)
 
     def by_spectra(self, shapes: ShapesFit | None) -> SpectraFit | None:
@@ -92,15 +94,21 @@ class SupportsCase:
         """
         tube = self.tube
         values = self.outputs[:, :, tube.broadband]
-        if values.shape[-1] == 0:
+        if not values.any():  # no bins, or no motion
             return None
         segments = (values.real**2 + values.imag**2).swapaxes(0, 1)
-        comparison = SpectraComparison(tube.structure, tube.at_broadband, tube.kernel, segments)
-        coarse = CoarseCost(comparison, tube.at_broadband_bins)
+        moving = segments.any(axis=(0, 2))  # a dead sensor, or one at a node
+        comparison = SpectraComparison(
+            tube.structure, tube.at_broadband.outputs(moving), tube.kernel, segments[:, moving]
+        )
+        coarse = CoarseCost(comparison, tube.at_broadband_bins.outputs(moving))
         starts = self.search.coarse_starts(coarse, len(tube.directions))
         if shapes is not None:
             starts.append(Start(np.log(shapes.values.k), SHAPE_LOSS))
-        return comparison.fit(self.search, starts, tube.lowest_stable_damping, self.averages)
+        found = comparison.fit(self.search, starts, tube.lowest_stable_damping, self.averages)
+        curve = np.full((len(moving), values.shape[-1]), np.nan)
+        curve[moving] = found.curve
+        return replace(found, curve=curve)
 
     def by_shapes(self) -> ShapesFit | None:
         """Return the ShapesFit, or None where nothing along the line moves."""
@@ -176,7 +184,7 @@ def _estimates_by_pole(
 ) -> list[Estimate]:
     """Return the Estimates of the step that a pole adds to the broadband comparison."""
     if result.spectra is None:
-        return _unresolved(case, method, "the force has no power in the band of the comparison")
+        return _unresolved(case, method, _no_spectra(case))
     if fit is None:
         return _unresolved(case, method, "no resonance could be fitted to the main peak")
     start = result.spectra
@@ -198,11 +206,18 @@ def _shape_of(fit: SpectraFit) -> np.ndarray:
     return inverse_information(fit.values.jacobian)
 
 
+def _no_spectra(case: SupportsCase) -> str:
+    """Return why the broadband comparison found nothing."""
+    if not case.tube.frequency[case.tube.broadband].size:
+        return "the force has no power in the band of the comparison"
+    return "no supports have these spectra"
+
+
 def _estimates_by_shapes(case: SupportsCase, result: SupportsResult) -> list[Estimate]:
     """Return the Estimates of the shapes: k alone."""
     fit = result.shapes
     if fit is None:
-        return _unresolved(case, "ods", "the force moves no point of the shape line")
+        return _unresolved(case, "ods", "no supports have the shapes of the shape line")
     # The error of the model is part of the covariance already.
     found = MethodResult(
         "ods", fit.values.k, np.full(len(fit.values.k), np.nan), fit.covariance, None
@@ -217,7 +232,7 @@ def _estimates_by_spectra(case: SupportsCase, result: SupportsResult) -> list[Es
     """Return the Estimates of the broadband comparison."""
     fit = result.spectra
     if fit is None:
-        return _unresolved(case, "broadband", "the force has no power in the band")
+        return _unresolved(case, "broadband", _no_spectra(case))
     found = MethodResult("broadband", fit.values.k, fit.values.c, fit.covariance, fit.model_change)
     estimates = [
         without_damping(estimate) if at_edge else estimate

@@ -138,6 +138,8 @@ class SupportSearch:
             2 direction) by ln k and c).
         lowest_c: function of k (direction,) in N/m that gives the c (direction,) in N s/m below
             which the structure is unstable.
+
+        Raises LinAlgError where the residual at the start is not finite.
         """
         from scipy.optimize import least_squares  # half a second to import
 
@@ -154,6 +156,8 @@ class SupportSearch:
 
         def error(values: np.ndarray) -> np.ndarray:
             residual, jacobian = evaluate(np.exp(values[:count]), values[count:] * unit)
+            if not state and not np.isfinite(residual).all():
+                raise np.linalg.LinAlgError("the structure has no response that could be compared")
             state["values"], state["slope"] = values.copy(), jacobian * scale
             return residual
 

@@ -10,6 +10,8 @@ A block counts by the inverse of its variance, which holds the error of the sens
 of the motion that is not one shape, and the error of the model's frequencies.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -47,6 +49,10 @@ class BlockShapes:
     shapes: np.ndarray
     deviation: np.ndarray
     weights: np.ndarray
+
+    def of(self, blocks: np.ndarray) -> BlockShapes:
+        """Return some of the blocks: (block,) bool."""
+        return BlockShapes(self.shapes[blocks], self.deviation[blocks], self.weights[blocks])
 
 
 @dataclass(frozen=True)
@@ -135,11 +141,13 @@ class ShapeComparison:
         observed: of the line's points, on the fine grid of the measured blocks.
         force_psd: (frequency,) relative PSD of the force there.
         """
-        self.structure, self.observed, self.measured = structure, observed, measured
-        self.search = search
-        self.share = measured.weights * force_psd
-        heard = self.share.sum(axis=1) > 1.0e-3 * measured.weights.sum(axis=1)
-        self.factor = np.where(heard, 1.0 / measured.deviation, 0.0)
+        self.structure, self.observed, self.search = structure, observed, search
+        share = measured.weights * force_psd
+        # Where the force has no power the structure's shape is 0 and has no direction.
+        heard = share.sum(axis=1) > 1.0e-3 * measured.weights.sum(axis=1)
+        self.measured = measured.of(heard)
+        self.share = share[heard]
+        self.factor = 1.0 / self.measured.deviation
 
     def residual(self, k: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return (residual (residual,), jacobian (residual, 2 direction)) by ln k and c.
@@ -201,8 +209,8 @@ class ShapeComparison:
         values = self.search.best_of(self.residual, starts, lowest_c)
         count = len(values.k)
         shapes = values.residual[: len(values.residual) - count]
-        heard = np.count_nonzero(self.factor) * 2 * (self.measured.shapes.shape[1] - 1)
-        excess = max(1.0, shapes @ shapes / max(heard - 2 * count, 1))
+        points = self.measured.shapes.shape[1] - 1
+        excess = max(1.0, shapes @ shapes / max(2 * points * len(self.factor) - 2 * count, 1))
         covariance = inverse_information(values.jacobian) * excess
         across = np.sum(shapes.reshape(2, len(self.factor), -1) ** 2, axis=(0, 2))
         weight = self.factor**2

@@ -15,6 +15,10 @@ from scipy import linalg
 from vibroimpact.reduction.modal_model import ModalModel
 
 
+class PoleError(ValueError):
+    """A mode or pole that does not exist, was not found, or could not be followed."""
+
+
 def contact_matrix(model: ModalModel) -> np.ndarray:
     """Return B (mode, contact_row) in kg^-1/2: contact shapes times the root of their weights.
 
@@ -76,7 +80,7 @@ def first_mode(model: ModalModel, modes: np.ndarray, k: float) -> tuple[float, n
     modes: (mode,) indices of the block.
     k: support stiffness in N/m.
 
-    Raises ValueError when there is no vibration: a free tube without support, or a negative k under
+    Raises PoleError when there is no vibration: a free tube without support, or a negative k under
     which the tube buckles.
     """
     square, vector = linalg.eigh(
@@ -84,7 +88,7 @@ def first_mode(model: ModalModel, modes: np.ndarray, k: float) -> tuple[float, n
         subset_by_index=[0, 0],
     )
     if square[0] <= 0.0:
-        raise ValueError(
+        raise PoleError(
             f"with a support stiffness of {k:.6g} N/m the tube has no lowest frequency above 0"
         )
     return np.sqrt(square[0]), vector[:, 0]

@@ -11,7 +11,7 @@ from scipy import linalg
 
 from vibroimpact.reduction.modal_model import ModalModel
 
-from .modes import contact_matrix, driven_block, first_mode, support_stiffness
+from .modes import PoleError, contact_matrix, driven_block, first_mode, support_stiffness
 
 POLE_TOLERANCE = 1.0e-12
 # A Newton step below this that no longer shrinks is round-off: very stiff supports do not reach
@@ -39,7 +39,7 @@ def first_pole(model: ModalModel, k: float, c: float) -> complex:
 
     k, c: stiffness in N/m and damping in N s/m of the support.
 
-    Raises ValueError when it cannot be followed to c (the message says how far it was), or k leaves
+    Raises PoleError when it cannot be followed to c (the message says how far it was), or k leaves
     the tube unstable.
     """
     return _follow_first_mode(model, k, c)[0]
@@ -114,7 +114,7 @@ def _follow_first_mode(
         except ValueError:
             step *= 0.5
             if abs(step) < 1.0e-6 * abs(c):
-                raise ValueError(
+                raise PoleError(
                     f"the first pole at k = {k:.6g} N/m was followed to c = {reached:.6g} N s/m,"
                     f" not to {c:.6g}"
                 ) from None
@@ -133,7 +133,7 @@ def _refine_pole(
 ) -> tuple[complex, np.ndarray]:
     """Return (pole, vector (mode,)) by Newton's method from a guess.
 
-    They solve (pole² + pole (diag(damping) + c W) + stiffness) vector = 0. Raises ValueError when
+    They solve (pole² + pole (diag(damping) + c W) + stiffness) vector = 0. Raises PoleError when
     Newton does not converge, or ends more than 5 % from the guess: that is another mode.
     """
     guess, norm = pole, vector.conj() / np.vdot(vector, vector)
@@ -157,9 +157,9 @@ def _refine_pole(
         if step < POLE_TOLERANCE or 0.5 * before < step < POLE_ROUND_OFF:
             break
     else:
-        raise ValueError("Newton did not settle on a pole")
+        raise PoleError("Newton did not settle on a pole")
     if abs(pole - guess) > 0.05 * abs(guess):
-        raise ValueError("Newton went to another pole")
+        raise PoleError("Newton went to another pole")
     return pole, vector
 
 

@@ -12,6 +12,8 @@ One small solve per frequency gives the response and its derivatives with respec
 stiffnesses and dampings.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -36,6 +38,10 @@ class Observed:
     free: np.ndarray
     contact: np.ndarray
     part: slice | np.ndarray
+
+    def outputs(self, chosen: np.ndarray) -> Observed:
+        """Return the Observed of some outputs: (output,) bool."""
+        return Observed(self.free[:, chosen], self.contact[:, :, chosen], self.part)
 
 
 class SupportedStructure:

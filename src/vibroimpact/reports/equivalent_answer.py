@@ -6,19 +6,15 @@ k (N/m) and c (N s/m) are per support. A value that is not resolved is NaN and h
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
+from vibroimpact.study import method_agreement
+from vibroimpact.study.equivalent_table import equivalent_rows
+from vibroimpact.study.reasons import NOT_MOVED
 
-from vibroimpact.study.equivalent_table import NOT_MOVED
-
-from .method_names import method_name
-
-# The methods whose agreement is judged, by quantity: a shape carries no damping.
-COMPARED = {"k": ("lscf", "ods", "broadband"), "c": ("lscf", "broadband")}
-AGREEMENT = 0.25  # largest relative distance from the median
+COMPARED = {"k": method_agreement.COMPARED, "c": method_agreement.COMPARED_DAMPING}
 ALL_SUPPORTS = "all"
 UNITS = {"k": "N_per_m", "c": "N_s_per_m"}
 
@@ -28,8 +24,9 @@ class Value:
     """A recommended value with its interval over seeds.
 
     value, low, high: N/m or N s/m; NaN where not resolved.
-    agreement: agree, spread or unresolved.
+    agreement: one of method_agreement.VERDICTS.
     reason: why it is not resolved, or what else is to be known; empty for nothing.
+    methods: medians of the compared methods that resolve it.
     """
 
     value: float
@@ -37,16 +34,28 @@ class Value:
     high: float
     agreement: str
     reason: str = ""
+    methods: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def resolved(self) -> bool:
         """Whether there is a value."""
         return math.isfinite(self.value)
 
+    @property
+    def apart(self) -> float:
+        """The largest relative distance of a method from the value; NaN for less than two."""
+        if not self.resolved or len(self.methods) < 2:
+            return math.nan
+        return max(abs(value / self.value - 1.0) for value in self.methods.values())
+
 
 @dataclass(frozen=True)
 class Answer:
-    """The equivalent support of one gap (m), load (N RMS), group of supports and direction."""
+    """The equivalent support of one gap (m), load (N RMS), group of supports and direction.
+
+    bound: N/m, what k is below where it does not differ from 0; NaN otherwise.
+    touching: share of time in contact; NaN where not known.
+    """
 
     gap_m: float
     load_rms_N: float
@@ -54,6 +63,13 @@ class Answer:
     direction: str
     k: Value
     c: Value
+    bound: float = math.nan
+    touching: float = math.nan
+
+    @property
+    def bounded(self) -> bool:
+        """Whether the answer is an upper bound of k."""
+        return math.isfinite(self.bound)
 
     @property
     def place(self) -> tuple[float, str, str]:
@@ -81,16 +97,23 @@ def answers(
     Directions that the force does not move are left out: see unmoved.
 
     summary: rows of consistency_summary.csv.
-    equivalent: rows of equivalent.csv; None where there is no such table. The recommended value is
-    then the median of the compared methods.
+    equivalent: rows of equivalent.csv; None where there is no such table, which is then made of the
+    summary.
     direction: that of rows without, such as y.
     """
-    if equivalent is None:
-        found = _from_summary(with_places(summary, direction))
-    else:
-        moved = [row for row in equivalent if row["reason_k"] != NOT_MOVED]
-        found = [_from_equivalent(row) for row in with_places(moved, direction)]
+    placed = with_places(summary, direction)
+    rows = equivalent_rows(placed) if equivalent is None else with_places(equivalent, direction)
+    methods: dict[tuple, dict[str, dict]] = {}
+    for row in placed:
+        methods.setdefault(_place(row), {})[row["method"]] = row
+    found = [
+        _answer(row, methods.get(_place(row), {})) for row in rows if row["reason_k"] != NOT_MOVED
+    ]
     return sorted(found, key=lambda row: (-row.gap_m, row.group, row.direction, row.load_rms_N))
+
+
+def _place(row: dict) -> tuple[float, float, str, str]:
+    return float(row["gap_m"]), float(row["load_rms_N"]), row["group"], row["direction"]
 
 
 def unmoved(equivalent: Sequence[dict] | None) -> list[tuple[str, str]]:
@@ -102,50 +125,26 @@ def unmoved(equivalent: Sequence[dict] | None) -> list[tuple[str, str]]:
     return list(dict.fromkeys((str(row["group"]), str(row["direction"])) for row in still))
 
 
-def _from_equivalent(row: dict[str, Any]) -> Answer:
+def _answer(row: dict[str, Any], methods: dict[str, dict]) -> Answer:
+    """Return the Answer of a row of equivalent.csv; methods: {method: row of the summary}."""
+
     def value(quantity):
+        medians = {
+            name: _number(methods[name][f"{quantity}_median"])
+            for name in COMPARED[quantity]
+            if name in methods
+        }
         return Value(
             _number(row[f"{quantity}_{UNITS[quantity]}"]),
             _number(row[f"{quantity}_low"]),
             _number(row[f"{quantity}_high"]),
             str(row[f"agreement_{quantity}"]),
             _text(row[f"reason_{quantity}"]),
+            {name: median for name, median in medians.items() if math.isfinite(median)},
         )
 
-    place = float(row["gap_m"]), float(row["load_rms_N"]), row["group"], row["direction"]
-    return Answer(*place, value("k"), value("c"))
-
-
-def _from_summary(rows: list[dict]) -> list[Answer]:
-    """Return the Answers of a summary without recommended values: medians of the methods."""
-    places: dict[tuple, dict[str, dict]] = {}
-    for row in rows:
-        key = float(row["gap_m"]), float(row["load_rms_N"]), row["group"], row["direction"]
-        places.setdefault(key, {})[row["method"]] = row
-    return [
-        Answer(*key, *(_median(methods, quantity) for quantity in ("k", "c")))
-        for key, methods in places.items()
-    ]
-
-
-def _median(methods: dict[str, dict], quantity: str) -> Value:
-    """Return the median of the compared methods, if all of them have a value."""
-    columns = (f"{quantity}_median", f"{quantity}_low", f"{quantity}_high")
-    rows = {
-        name: [_number(methods[name][column]) for column in columns]
-        for name in COMPARED[quantity]
-        if name in methods
-    }
-    missing = [
-        name for name in COMPARED[quantity] if not math.isfinite(rows.get(name, [math.nan])[0])
-    ]
-    if missing:
-        names = " and ".join(method_name(name) for name in missing)
-        return Value(math.nan, math.nan, math.nan, "unresolved", f"no value by {names}")
-    middle, low, high = np.array([*rows.values()]).T
-    centre = float(np.median(middle))
-    near = bool(np.all(np.abs(middle - centre) <= AGREEMENT * abs(centre)))
-    return Value(centre, float(low.min()), float(high.max()), "agree" if near else "spread")
+    bound, touching = (_number(row.get(name)) for name in ("k_bound", "contact_fraction"))
+    return Answer(*_place(row), value("k"), value("c"), bound, touching)
 
 
 def _number(value: Any) -> float:

@@ -135,7 +135,7 @@ class StudyContent:
 
     def headline(self) -> list[str]:
         """Return the answer in sentences."""
-        sentences = headline(self.answers, self.unit)
+        sentences = headline(self.config, self.answers)
         if self.unmoved:
             places = ", ".join(f"{group} in {direction}" for group, direction in self.unmoved)
             sentences.append(f"No answer where the force moves no support: {places}.")

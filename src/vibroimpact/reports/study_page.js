@@ -45,10 +45,20 @@
   function show(changed) {
     const output = element("load-shown");
     if (output) output.textContent = controlled("load").values[position.load];
+    tellHere();
     for (const plot of data.plots) {
       const follows = plot.controls.includes(changed) || (plot.cursor && changed === "load");
       if (changed === null || follows) draw(plot);
     }
+  }
+
+  function tellHere() {
+    const here = element("here");
+    if (!here) return;
+    const load = controlled("load").numbers[position.load];
+    const answer = data.here.find(([gap, place, at]) =>
+      gap === position.gap && place === position.place && at === load);
+    here.textContent = answer ? answer[3] : "";
   }
 
   function move() {

@@ -17,6 +17,7 @@ from .captions import CATEGORIES, Caption
 from .number_text import digits
 from .page_style import STUDY_STYLE
 from .study_content import StudyContent
+from .study_words import answers_by_place
 
 TEMPLATE = Path(__file__).with_suffix(".html")
 SCRIPT = Path(__file__).with_suffix(".js")
@@ -72,6 +73,7 @@ def study_page(content: StudyContent, plots: PagePlots, pictures: Sequence[Pictu
                     {"name": control.name, "numbers": control.numbers, "values": control.values}
                     for control in plots.controls
                 ],
+                "here": answers_by_place(content),
             }
         ),
         script=SCRIPT.read_text(encoding="utf-8"),

@@ -13,9 +13,16 @@ from .number_text import digits
 from .study_statistics import RESIDUALS, SEVERAL, Spread, StudyStatistics
 from .study_words import stiffness_unit
 
-AGREEMENTS = {"agree": "agree", "spread": "differ", "unresolved": "not resolved"}
-NUMBER = re.compile(r"-|-?\d[-+.e\d]*( to -?\d[-+.e\d]*)?")  # a number, an interval or none
-DIFFER = {"spread": "the methods differ by more than 25 %"}
+AGREEMENTS = {
+    "agree": "agree",
+    "spread": "over 25 % apart",
+    "differ": "differ",
+    "unresolved": "not resolved",
+}
+PARTIAL = {"k": "two of three", "c": "one of two"}
+NUMBER = re.compile(r"-|(< )?-?\d[-+.e\d]*( to -?\d[-+.e\d]*)?")  # a number, an interval or none
+NUMBERS = re.compile(r"[-+]?\d[-+.e\d]*( (?=[kMG]?N))?[kMG]?")  # with the prefix of a unit
+LONG_CELL = 30  # characters of a cell that holds a sentence
 RESIDUAL_WORDS = {
     "energy_residual": "with the work of the contact forces",
     "potential_energy_residual": "with the contact's potential energy",
@@ -52,6 +59,10 @@ class Table(NamedTuple):
         cells = [[row[at] for row in self.rows] for at in range(len(self.columns))]
         return [bool(column) and all(map(NUMBER.fullmatch, column)) for column in cells]
 
+    def wordy(self) -> bool:
+        """Whether some cells hold sentences, so that a narrow screen shows a row as a block."""
+        return any(len(cell) > LONG_CELL for row in self.rows for cell in row)
+
 
 def answer_table(answers: Sequence[Answer], several: bool, unit: str) -> Table:
     """Return recommended k and c with intervals over seeds and agreement, a row per answer.
@@ -77,16 +88,28 @@ def answer_table(answers: Sequence[Answer], several: bool, unit: str) -> Table:
             digits(1e3 * row.gap_m),
             *((row.group, row.direction) if several else ()),
             digits(row.load_rms_N),
-            *_value_cells(row.k, factor),
-            *_value_cells(row.c, 1.0),
+            *_value_cells(row, "k", factor),
+            *_value_cells(row, "c", 1.0),
         )
         for row in answers
     ]
     return Table(columns, rows)
 
 
-def _value_cells(value: Value, factor: float) -> tuple[str, str, str]:
-    agreement = AGREEMENTS.get(value.agreement, value.agreement)
+def agreement_in_words(row: Answer, quantity: str) -> str:
+    """Return what the methods say of k or c, in a few words."""
+    value: Value = getattr(row, quantity)
+    if row.bounded:
+        return "upper bound" if quantity == "k" else "no contact to tell"
+    words = {**AGREEMENTS, "partial": PARTIAL[quantity]}
+    return words.get(value.agreement, value.agreement)
+
+
+def _value_cells(row: Answer, quantity: str, factor: float) -> tuple[str, str, str]:
+    value: Value = getattr(row, quantity)
+    agreement = agreement_in_words(row, quantity)
+    if row.bounded and quantity == "k":
+        return f"< {digits(factor * row.bound)}", "-", agreement
     if not value.resolved:
         return "-", "-", agreement
     return digits(factor * value.value), span(factor * value.low, factor * value.high), agreement
@@ -102,38 +125,45 @@ def reason_table(
 ) -> Table:
     """Return why values are not resolved or differ, a row per run of loads with the same reason.
 
-    The share of time in contact tells whether there was a support to see.
+    k and c share a row where they share the reason. The share of time in contact tells whether
+    there was a support to see.
     """
     places = ("supports", "direction") if several else ()
     columns = ("gap (mm)", *places, f"loads ({unit} RMS)", "value", "why", "time in contact (%)")
     rows = []
     for place, group in groupby(answers, key=lambda row: row.place):
-        chosen = list(group)
+        curve = list(group)
         for quantity in ("k", "c"):
-            for (agreement, kind), run in groupby(
-                chosen, key=lambda row: _kind(getattr(row, quantity))
-            ):
-                if agreement == "agree" and not kind:
-                    continue
+            for kind, run in groupby(curve, key=lambda row: _kind(row, quantity)):
                 alike = list(run)
                 loads = [row.load_rms_N for row in alike]
-                reason = _reason([getattr(row, quantity).reason for row in alike], loads[0], unit)
+                if kind is None:
+                    continue
+                reasons = [getattr(row, quantity).reason for row in alike]
                 rows.append(
                     (
                         digits(1e3 * place[0]),
                         *(place[1:] if several else ()),
                         digits(loads[0]) if len(loads) == 1 else span(loads[0], loads[-1]),
-                        f"{quantity}: {AGREEMENTS.get(agreement, agreement)}",
-                        reason or DIFFER.get(agreement, "-"),
-                        _touching(statistics, place[0], loads),
+                        f"{kind[0]}: {kind[1]}",
+                        _reason(reasons, loads[0], unit),
+                        _touching(statistics, alike),
                     )
                 )
     return Table(columns, rows)
 
 
-def _kind(value: Value) -> tuple[str, str]:
-    """Return (agreement, reason without its numbers): loads alike in both share a row."""
-    return value.agreement, re.sub(r"[-+]?\d[-+.e\d]*", "#", value.reason)
+def _kind(row: Answer, quantity: str) -> tuple[str, str, str] | None:
+    """Return (k, c or both, agreement, reason without its numbers), by which loads share a row.
+
+    None where there is nothing to tell, or k tells it.
+    """
+    value: Value = getattr(row, quantity)
+    both = not row.k.resolved and not row.c.resolved and row.k.reason == row.c.reason
+    if not value.reason or (both and quantity == "c"):
+        return None
+    name = "k and c" if both and not row.bounded else quantity
+    return name, agreement_in_words(row, quantity), NUMBERS.sub("#", value.reason)
 
 
 def _reason(reasons: Sequence[str], load: float, unit: str) -> str:
@@ -143,9 +173,14 @@ def _reason(reasons: Sequence[str], load: float, unit: str) -> str:
     return f"{reasons[0]} (at {digits(load)} {unit} RMS, likewise at the others)"
 
 
-def _touching(statistics: StudyStatistics, gap_m: float, loads: Sequence[float]) -> str:
+def _touching(statistics: StudyStatistics, alike: Sequence[Answer]) -> str:
+    """Return the range of the time in contact: of the answers, or of all supports without it."""
     values = [
-        100.0 * statistics.spread("contact_fraction", gap_m, load, SEVERAL).median for load in loads
+        100.0 * row.touching
+        if math.isfinite(row.touching)
+        else 100.0
+        * statistics.spread("contact_fraction", row.gap_m, row.load_rms_N, SEVERAL).median
+        for row in alike
     ]
     finite = [value for value in values if math.isfinite(value)]
     if not finite:

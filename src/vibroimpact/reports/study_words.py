@@ -10,8 +10,10 @@ import numpy as np
 
 from vibroimpact.identify.secant import SMALL_OFFSET
 from vibroimpact.integration.energy_limit import ENERGY_LIMIT
+from vibroimpact.study.method_agreement import AGREEMENT
+from vibroimpact.study.reasons import agreement_sentence
 
-from .equivalent_answer import AGREEMENT, ALL_SUPPORTS, Answer, Value
+from .equivalent_answer import ALL_SUPPORTS, COMPARED, Answer, Value
 from .number_text import digits
 from .study_statistics import StudyStatistics
 
@@ -102,16 +104,19 @@ def _listed(texts: Sequence[str]) -> str:
     return texts[0] if len(texts) == 1 else f"{', '.join(texts[:-1])} and {texts[-1]}"
 
 
-def headline(answers: Sequence[Answer], unit: str) -> list[str]:
+def headline(config: Any, answers: Sequence[Answer]) -> list[str]:
     """Return the answer in sentences: how often k and c are resolved, and their course with load.
 
-    unit: of the load.
+    config: of the study.
     """
     if not answers:
         return []
     places = list(dict.fromkeys(row.place for row in answers))
     several = len({place[1:] for place in places}) > 1
+    unit = load_unit(config)
     sentences = [_agreement(answers, quantity, several) for quantity in ("k", "c")]
+    each = several or any(row.group != ALL_SUPPORTS for row in answers)
+    sentences += _readings(config, answers, each)
     scale = stiffness_unit([row.k.value for row in answers])
     for place in places[:MOST_PLACES]:
         rows = [row for row in answers if row.place == place]
@@ -125,16 +130,39 @@ def headline(answers: Sequence[Answer], unit: str) -> list[str]:
 
 
 def _agreement(answers: Sequence[Answer], quantity: str, several: bool) -> str:
-    """Return how many cases agree, differ and are not resolved."""
-    kinds = [getattr(row, quantity).agreement for row in answers]
-    agree, spread, missing = (kinds.count(word) for word in ("agree", "spread", "unresolved"))
-    total = len(kinds)
-    of_what = "load, gap, supports and direction" if several else "load and gap"
-    cases = f"case{'s' * (total != 1)} of {of_what}"
-    parts = [f"the independent methods agree within {100 * AGREEMENT:.0f} % in {agree}"]
-    parts += [f"differ by more in {spread}"] if spread else []
-    parts += [f"do not all resolve it in {missing}"] if missing else []
-    return f"{NAMES[quantity]}: of {total} {cases}, {_listed(parts)}."
+    """Return how many cases agree, and what the others are."""
+    values = [getattr(row, quantity) for row in answers]
+    kinds = [
+        "bounded" if row.bounded else value.agreement
+        for row, value in zip(answers, values, strict=True)
+    ]
+    cases = "cases of load, gap, supports and direction" if several else "pairs of load and gap"
+    apart = max((value.apart for value in values if value.agreement == "agree"), default=AGREEMENT)
+    return f"{NAMES[quantity]}: {agreement_sentence(quantity, kinds, cases, apart)}."
+
+
+def _readings(config: Any, answers: Sequence[Answer], several: bool) -> list[str]:
+    """Return what each method reads, and what the broadband comparison adds."""
+    if several:
+        return [
+            "The broadband comparison and the shapes both read the whole band; the pole only"
+            " corrects what the broadband comparison finds."
+        ]
+    others = [
+        row.k.methods["broadband"] / (0.5 * (row.k.methods["lscf"] + row.k.methods["ods"])) - 1.0
+        for row in answers
+        if len(row.k.methods) == len(COMPARED["k"])
+    ]
+    if not others:
+        return []
+    identification = config.identification
+    return [
+        "LSCF pole, peak width and deflection shape all read the main peak"
+        f" ({_band(identification.peak_search_Hz)}): that they agree says little. The broadband PSD"
+        f" reads every peak from {_band(identification.broadband.band_Hz)}: its k is"
+        f" {100.0 * min(others):+.0f} to {100.0 * max(others):+.0f} % from the mean of pole and"
+        " shape."
+    ]
 
 
 def _course(rows: Sequence[Answer], quantity: str, scale: tuple[str, float], load: str) -> str:
@@ -144,7 +172,7 @@ def _course(rows: Sequence[Answer], quantity: str, scale: tuple[str, float], loa
     ]
     unit, factor = scale
     if not found:
-        return f"{quantity} is not resolved at any load"
+        return f"no {quantity} is recommended at any load"
     (first, low), (last, high) = found[0], found[-1]
     if len(found) == 1:
         return (
@@ -154,6 +182,43 @@ def _course(rows: Sequence[Answer], quantity: str, scale: tuple[str, float], loa
         f"{quantity} from {digits(factor * low.value)} {unit} at {digits(first)} {load} RMS to"
         f" {digits(factor * high.value)} {unit} at {digits(last)} {load} RMS"
     )
+
+
+def answers_by_place(content: Any) -> list[tuple[int, int, float, str]]:
+    """Return (gap, group and direction, load, k and c as text) for the controls of the page.
+
+    The first two are positions of the controls, the load is in its unit. content: StudyContent.
+    """
+    gaps = list(dict.fromkeys(row.gap_m for row in content.answers))
+    pairs = list(dict.fromkeys((row.group, row.direction) for row in content.answers))
+    scale = stiffness_unit([row.k.value for row in content.answers])
+    return [
+        (
+            gaps.index(row.gap_m),
+            pairs.index((row.group, row.direction)),
+            row.load_rms_N,
+            f"{answer_in_words(row, scale)} In a shell: vibroimpact equivalent {content.name}"
+            f" --load {row.load_rms_N:g} --gap {row.gap_m:g}",
+        )
+        for row in content.answers
+    ]
+
+
+def answer_in_words(row: Answer, scale: tuple[str, float]) -> str:
+    """Return k and c of a case with their intervals, or why there are none.
+
+    scale: unit of k, and units per N/m.
+    """
+    parts = []
+    for name, value, (unit, factor) in (("k", row.k, scale), ("c", row.c, ("N s/m", 1.0))):
+        if value.resolved:
+            ends = f"{digits(factor * value.low)} to {digits(factor * value.high)}"
+            more = f": {value.reason}" if value.reason else ""
+            parts.append(f"{name} = {digits(factor * value.value)} {unit} ({ends}){more}")
+        elif name == "k" or value.reason != row.k.reason:
+            parts.append(value.reason if row.bounded else f"no {name}: {value.reason}")
+    text = "; ".join(parts)
+    return text[:1].replace("n", "N") + text[1:] + "."  # but k stays k
 
 
 def place_in_words(gap_m: float, group: str, direction: str, several: bool | None = None) -> str:

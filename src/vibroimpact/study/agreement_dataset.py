@@ -26,6 +26,8 @@ SUMMARY = {
     "c_median": ("N s m-1", "median over seeds of the equivalent damping of a support"),
     "c_low": ("N s m-1", "smallest equivalent damping of a support over seeds"),
     "c_high": ("N s m-1", "largest equivalent damping of a support over seeds"),
+    "k_bound": ("N m-1", "upper bound of the stiffness where it does not differ from 0"),
+    "contact_fraction": ("1", "time in contact of the support that is touched most"),
     "ratio": ("1", "median stiffness over the median of the compared methods"),
 }
 

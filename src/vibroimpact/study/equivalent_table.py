@@ -11,7 +11,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from .method_agreement import COMPARED, COMPARED_DAMPING
+from .method_agreement import COMPARED, Span, compared_spans, verdict
+from .reasons import NOT_MOVED, damping_reason, stiffness_reason
 
 EQUIVALENT_COLUMNS = (
     "gap_m",
@@ -32,9 +33,10 @@ EQUIVALENT_COLUMNS = (
     "reason_k",
     "reason_c",
     "flag",
+    "k_bound",
+    "contact_fraction",
 )
-FEWEST_METHODS = 2  # of the stiffness; a single reading is not confirmed
-NOT_MOVED = "the force does not move the supports in this direction"
+NO_SPAN: Span = (np.nan, np.nan, np.nan)
 
 
 def equivalent_rows(summary: list[dict], unreached: Sequence[tuple[str, str]] = ()) -> list[dict]:
@@ -43,8 +45,10 @@ def equivalent_rows(summary: list[dict], unreached: Sequence[tuple[str, str]] = 
     A stiffness needs two of the three compared methods, a damping one of the two. With several
     supports the pole only corrects what the spectra say, so that the two are one reading: the shape
     must then resolve the stiffness too, if it does so at any load. low and high are the smallest
-    and largest value of these methods over all seeds. Where a value is not resolved, it is NaN and
-    the reason says why. flag: what makes the values of the compared methods doubtful.
+    and largest value of these methods over all seeds. Where methods differ by more than 25 % with
+    disjoint intervals there is no recommended value. Where a value is not resolved, it is NaN and
+    the reason says why; k_bound (N/m) is what k is below where it does not differ from 0. flag:
+    what makes the values of the compared methods doubtful.
 
     unreached: (group, direction) that the force does not move; they get rows without values.
     """
@@ -52,14 +56,14 @@ def equivalent_rows(summary: list[dict], unreached: Sequence[tuple[str, str]] = 
     for row in summary:
         place = (row["gap_m"], row["load_rms_N"], row["group"], row["direction"])
         places.setdefault(place, {})[row["method"]] = row
-    supports = {place[2:] for place in places}
+    several = len({place[2:] for place in places}) > 1
     seen = {
         place[2:]
         for place, methods in places.items()
         if "ods" in methods and np.isfinite(methods["ods"]["k_median"])
     }
     rows = [
-        _row(place, methods, len(supports) > 1 and place[2:] in seen)
+        _row(place, methods, several, several and place[2:] in seen)
         for place, methods in places.items()
     ]
     for gap_m, load_rms_N in dict.fromkeys(place[:2] for place in places):
@@ -68,39 +72,40 @@ def equivalent_rows(summary: list[dict], unreached: Sequence[tuple[str, str]] = 
     return sorted(rows, key=lambda row: (-row["gap_m"], row["load_rms_N"]))
 
 
-def _row(place: tuple, methods: dict[str, dict], shape_needed: bool) -> dict:
+def _row(place: tuple, methods: dict[str, dict], several: bool, shape_needed: bool) -> dict:
     """Return the row of one gap, load, group and direction.
 
+    several: whether supports are identified each for itself.
     shape_needed: whether the stiffness must be resolved by the shape.
     """
-    k = _recommended(methods, "k", COMPARED, FEWEST_METHODS)
-    if shape_needed and not np.isfinite(methods.get("ods", {}).get("k_median", np.nan)):
-        k = (np.nan, np.nan, np.nan)
-    c = _recommended(methods, "c", COMPARED_DAMPING, 1)
+    spans = {quantity: compared_spans(methods, quantity, several) for quantity in "kc"}
+    if shape_needed and np.isnan(spans["k"].get("ods", NO_SPAN)[0]):
+        spans["k"].pop("lscf", None)  # one reading with the broadband comparison
+    agreement = {quantity: verdict(spans[quantity], quantity) for quantity in "kc"}
+    k = recommended(spans["k"], agreement["k"])
+    c = recommended(spans["c"], agreement["c"]) if np.isfinite(k[0]) else NO_SPAN
+    bound = (
+        np.nan if np.isfinite(k[0]) or agreement["k"] == "differ" else _bound(methods, spans["k"])
+    )
     secant = methods.get("secant", {"k_median": np.nan, "c_median": np.nan})
-    compared = next((methods[name] for name in COMPARED_DAMPING if name in methods), {})
-    values = {
-        **_empty(place, ""),
-        "k_N_per_m": k[0],
-        "k_low": k[1],
-        "k_high": k[2],
-        "c_N_s_per_m": c[0] if np.isfinite(k[0]) else np.nan,
-        "c_low": c[1] if np.isfinite(k[0]) else np.nan,
-        "c_high": c[2] if np.isfinite(k[0]) else np.nan,
+    row = _empty(place, "") | {
         "secant_k_N_per_m": secant["k_median"],
         "secant_c_N_s_per_m": secant["c_median"],
-        "agreement_k": compared.get("verdict_k", "unresolved"),
-        "agreement_c": compared.get("verdict_c", "unresolved"),
+        "agreement_k": agreement["k"],
+        "agreement_c": agreement["c"] if np.isfinite(k[0]) else "unresolved",
+        "reason_k": stiffness_reason(methods, spans["k"], agreement["k"], bound),
+        "flag": _flags(methods),
+        "k_bound": bound,
+        "contact_fraction": next(iter(methods.values())).get("contact_fraction", np.nan),
     }
-    values["reason_k"] = "" if np.isfinite(k[0]) else _reasons(methods, "k_median", COMPARED)
-    values["reason_c"] = (
-        ""
-        if np.isfinite(values["c_N_s_per_m"])
-        else values["reason_k"] or _reasons(methods, "c_median", COMPARED_DAMPING)
+    row |= dict(zip(("k_N_per_m", "k_low", "k_high"), k, strict=True))
+    row |= dict(zip(("c_N_s_per_m", "c_low", "c_high"), c, strict=True))
+    row["reason_c"] = (
+        damping_reason(methods, spans["c"], agreement["c"])
+        if np.isfinite(k[0])
+        else row["reason_k"]
     )
-    flags = {name: methods[name].get("flag", "") for name in COMPARED if name in methods}
-    values["flag"] = _stated(flags)
-    return values
+    return row
 
 
 def _empty(place: tuple, reason: str) -> dict:
@@ -113,36 +118,27 @@ def _empty(place: tuple, reason: str) -> dict:
     return row
 
 
-def _recommended(
-    methods: dict[str, dict], quantity: str, compared: Sequence[str], fewest: int
-) -> tuple[float, float, float]:
-    """Return (median of the methods' medians, smallest, largest value), NaN for too few methods."""
-    found = [methods[name] for name in compared if name in methods]
-    found = [row for row in found if np.isfinite(row[f"{quantity}_median"])]
-    if len(found) < fewest:
-        return np.nan, np.nan, np.nan
-    return (
-        float(np.median([row[f"{quantity}_median"] for row in found])),
-        float(min(row[f"{quantity}_low"] for row in found)),
-        float(max(row[f"{quantity}_high"] for row in found)),
-    )
+def recommended(spans: Mapping[str, Span], agreement: str) -> Span:
+    """Return (median of the methods' medians, smallest, largest value), NaN where there is none."""
+    if agreement in ("unresolved", "differ"):
+        return NO_SPAN
+    found = np.array([span for span in spans.values() if np.isfinite(span[0])])
+    return float(np.median(found[:, 0])), float(found[:, 1].min()), float(found[:, 2].max())
 
 
-def _reasons(methods: dict[str, dict], column: str, compared: Sequence[str]) -> str:
-    """Return the reasons of the compared methods that give no value, each once."""
-    return _stated(
-        {
-            name: methods[name]["reason"] or "no value"
-            for name in compared
-            if name in methods and not np.isfinite(methods[name][column])
-        }
-    )
+def _bound(methods: dict[str, dict], spans: Mapping[str, Span]) -> float:
+    """Return what k is below: the least bound of a method, and what others resolve."""
+    bounds = [float(methods[name].get("k_bound", np.nan)) for name in spans]
+    bounds = [value for value in bounds if np.isfinite(value)]
+    resolved = [span[2] for span in spans.values() if np.isfinite(span[0])]
+    return max([min(bounds), *resolved]) if bounds else np.nan
 
 
-def _stated(texts: Mapping[str, str]) -> str:
-    """Return texts of methods as one, each text once with the methods that say it."""
+def _flags(methods: dict[str, dict]) -> str:
+    """Return the flags of the compared methods, each once, and the caution of the cases."""
     parts: dict[str, list[str]] = {}
-    for name, text in texts.items():
-        if text:
+    for name in COMPARED:
+        if name in methods and (text := methods[name].get("flag", "")):
             parts.setdefault(text, []).append(name)
-    return "; ".join(f"{', '.join(names)}: {reason}" for reason, names in parts.items())
+    stated = [f"{', '.join(names)}: {text}" for text, names in parts.items()]
+    return "; ".join(filter(None, [*stated, next(iter(methods.values())).get("caution", "")]))

@@ -6,19 +6,26 @@ group in one direction; NaN is unresolved.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import combinations
 
 import numpy as np
 
 from vibroimpact.identify.estimate import METHODS
 
-COMPARED = ("lscf", "ods", "broadband")  # one of each of the three independent kinds of method
+# One of each kind of method. The pole and the shape both read the main peak, the broadband PSD the
+# whole band.
+COMPARED = ("lscf", "ods", "broadband")
 COMPARED_DAMPING = ("lscf", "broadband")  # a shape tells no damping
-# Largest relative distance of a stiffness from the median of the three, and of two dampings from
-# each other, over the smaller.
+FEWEST = {"k": 2, "c": 1}  # methods that must resolve a value; a single stiffness is not confirmed
+# Largest relative distance of a stiffness from the median of three; of two values from each other,
+# over the smaller.
 AGREEMENT = 0.25
-VERDICTS = ("agree", "spread", "unresolved")
+# partial: those that resolve the value agree; spread: they are farther apart, with intervals that
+# overlap; differ: with disjoint ones, so that there is no recommended value.
+VERDICTS = ("agree", "partial", "spread", "differ", "unresolved")
+WEAK = "weak: "  # how the reason of a value begins that is resolved, but weakly
+Span = tuple[float, float, float]  # median, smallest, largest; NaN where not resolved
 SUMMARY_COLUMNS = (
     "gap_m",
     "load_rms_N",
@@ -37,6 +44,9 @@ SUMMARY_COLUMNS = (
     "verdict_c",
     "reason",
     "flag",
+    "k_bound",
+    "contact_fraction",
+    "caution",
 )
 COLLAPSE_COLUMNS = (
     "group",
@@ -71,47 +81,102 @@ def summary_rows(rows: list[dict]) -> list[dict]:
     """Return the rows of consistency_summary.csv: statistics over seeds.
 
     There is a row per gap, load, group, direction and method. k and c: median, smallest and largest
-    over seeds. A median needs a resolved value of at least half the seeds; fewer would be a chance
-    selection.
+    over seeds. A median needs a resolved value without a flag of at least half the seeds; fewer
+    would be a chance selection.
     ratio: k_median over the median of the k_median of the three compared methods.
-    verdict_k: "agree" when the three compared methods are resolved and within 25 % of their median,
-        "spread" when they are resolved and not, else "unresolved".
-    verdict_c: likewise of the two methods that tell c; they agree when they differ by at most 25 %
-        of the smaller.
-    A verdict stands in the rows of the methods that were compared, and is empty in all others.
-    reason: why k or c is not resolved; empty where both are, or where the method never tells c.
+    verdict_k, verdict_c: of the compared methods, see verdict; empty in the rows of all others.
+    reason: why k or c is not resolved, or k is weak; empty where both are, or where the method
+        never tells c.
     flag: what makes the values of one or more seeds doubtful, and in how many, see identify.guards.
+    k_bound: N/m, that k is below where it does not differ from 0, the largest over seeds.
+    contact_fraction: median over seeds. caution: what else is to be known of the cases.
     """
+    places = _by_place(rows)
+    several = len({place[2:] for place in places}) > 1
     summary = []
-    for place, methods in _by_place(rows).items():
-        spans = {
-            method: {"k": _span(cases, "k_N_per_m"), "c": _span(cases, "c_N_s_per_m")}
-            for method, cases in methods.items()
-        }
-        stiffness = [spans[method]["k"][0] for method in COMPARED if method in spans]
-        centre, verdict_k = stiffness_verdict(stiffness)
-        verdict_c = damping_verdict(
-            [spans[method]["c"][0] for method in COMPARED_DAMPING if method in spans]
-        )
-        gap_m, load_rms_N, group, direction = place
-        for method, span in spans.items():
-            values = (
-                gap_m,
-                load_rms_N,
-                load_rms_N / gap_m,
-                group,
-                direction,
-                method,
-                *span["k"],
-                *span["c"],
-                span["k"][0] / centre,
-                verdict_k if method in COMPARED else "",
-                verdict_c if method in COMPARED_DAMPING else "",
-                _reason(methods[method], span),
-                _flag(methods[method]),
-            )
-            summary.append(dict(zip(SUMMARY_COLUMNS, values, strict=True)))
+    for place, methods in places.items():
+        found = {name: _method_row(place, name, cases) for name, cases in methods.items()}
+        stiffness, damping = (compared_spans(found, quantity, several) for quantity in "kc")
+        medians = [span[0] for span in stiffness.values()]
+        whole = len(medians) == len(COMPARED) and np.all(np.isfinite(medians))
+        centre = float(np.median(medians)) if whole else np.nan
+        for name, row in found.items():
+            row["ratio"] = row["k_median"] / centre
+            row["verdict_k"] = verdict(stiffness, "k") if name in COMPARED else ""
+            row["verdict_c"] = verdict(damping, "c") if name in COMPARED_DAMPING else ""
+            summary.append({column: row[column] for column in SUMMARY_COLUMNS})
     return summary
+
+
+def _method_row(place: tuple, method: str, cases: list[dict]) -> dict:
+    """Return the row of a method without its verdicts."""
+    gap_m, load_rms_N, group, direction = place
+    k, c = _span(cases, "k_N_per_m"), _span(cases, "c_N_s_per_m")
+    touching = [row["contact_fraction"] for row in cases]
+    return {
+        "gap_m": gap_m,
+        "load_rms_N": load_rms_N,
+        "load_over_gap": load_rms_N / gap_m,
+        "group": group,
+        "direction": direction,
+        "method": method,
+        **dict(zip(("k_median", "k_low", "k_high"), k, strict=True)),
+        **dict(zip(("c_median", "c_low", "c_high"), c, strict=True)),
+        "reason": _reason(cases, {"k": k, "c": c}),
+        "flag": counted([str(row["flag"]) for row in cases]),
+        "k_bound": _bound(cases, k),
+        "contact_fraction": float(np.median(touching)),
+        "caution": counted([str(row["caution"]) for row in cases]),
+    }
+
+
+def compared_spans(methods: Mapping[str, dict], quantity: str, several: bool) -> dict[str, Span]:
+    """Return the Span of k or c of each compared method.
+
+    methods: {method: row of consistency_summary.csv} of one place.
+    several: whether the supports are identified each for itself. The pole then only corrects what
+        the broadband comparison found, and tells nothing where that does not resolve k.
+    """
+    spans = {
+        name: tuple(
+            float(methods[name][f"{quantity}_{part}"]) for part in ("median", "low", "high")
+        )
+        for name in (COMPARED if quantity == "k" else COMPARED_DAMPING)
+        if name in methods
+    }
+    if several and np.isnan(methods.get("broadband", {}).get("k_median", np.nan)):
+        spans.pop("lscf", None)
+    return spans  # type: ignore[return-value]
+
+
+def verdict(spans: Mapping[str, Span], quantity: str) -> str:
+    """Return one of VERDICTS on the spans of the compared methods.
+
+    Stiffnesses agree within 25 % of the median of three; two stiffnesses or dampings when they
+    differ by at most 25 % of the smaller.
+    """
+    compared = COMPARED if quantity == "k" else COMPARED_DAMPING
+    found = np.array([span for span in spans.values() if np.isfinite(span[0])]).reshape(-1, 3)
+    if len(found) < FEWEST[quantity]:
+        return "unresolved"
+    medians = found[:, 0]
+    if len(found) > 2:
+        apart = np.abs(medians - np.median(medians)).max() > AGREEMENT * np.median(medians)
+    else:
+        apart = len(found) > 1 and _distance(*medians) > AGREEMENT
+    if not apart:
+        return "agree" if len(found) == len(compared) else "partial"
+    disputed = any(
+        _distance(one[0], other[0]) > AGREEMENT and max(one[1], other[1]) > min(one[2], other[2])
+        for one, other in combinations(found, 2)
+    )
+    return "differ" if disputed else "spread"
+
+
+def _distance(one: float, other: float) -> float:
+    """Return the difference of two values over the smaller; infinite where one is 0."""
+    smaller = min(abs(one), abs(other))
+    return abs(one - other) / smaller if smaller > 0.0 else np.inf
 
 
 def _by_place(rows: list[dict]) -> dict[tuple, dict[str, list[dict]]]:
@@ -123,58 +188,53 @@ def _by_place(rows: list[dict]) -> dict[tuple, dict[str, list[dict]]]:
     return places
 
 
-def _span(cases: list[dict], column: str) -> tuple[float, float, float]:
-    """Return (median, smallest, largest) of the resolved values.
+def _span(cases: list[dict], column: str) -> Span:
+    """Return (median, smallest, largest) of the resolved values without a flag.
 
-    NaN where less than half of the cases are resolved.
+    NaN where less than half of the cases have one.
     """
-    values = np.array([row[column] for row in cases], dtype=float)
+    values = np.array([np.nan if row["flag"] else row[column] for row in cases], dtype=float)
     resolved = values[np.isfinite(values)]
     if 2 * resolved.size < values.size or resolved.size == 0:
         return np.nan, np.nan, np.nan
     return float(np.median(resolved)), float(resolved.min()), float(resolved.max())
 
 
-def stiffness_verdict(medians: Sequence[float]) -> tuple[float, str]:
-    """Return (median of the three, verdict) of the compared methods' medians of k."""
-    if len(medians) < len(COMPARED) or not np.all(np.isfinite(medians)):
-        return np.nan, "unresolved"
-    centre = float(np.median(medians))
-    near = np.all(np.abs(np.array(medians) - centre) <= AGREEMENT * centre)
-    return centre, "agree" if near else "spread"
-
-
-def damping_verdict(medians: Sequence[float]) -> str:
-    """Return the verdict of the medians of c of the methods that tell it."""
-    if len(medians) < len(COMPARED_DAMPING) or not np.all(np.isfinite(medians)):
-        return "unresolved"
-    near = all(
-        abs(one - other) <= AGREEMENT * min(abs(one), abs(other))
-        for one, other in combinations(medians, 2)
-    )
-    return "agree" if near else "spread"
+def _bound(cases: list[dict], k: Span) -> float:
+    """Return what k is below in all seeds where it does not differ from 0 in most; else NaN."""
+    bounds = np.array([row["k_bound"] for row in cases], dtype=float)
+    if np.isfinite(k[0]) or 2 * np.isfinite(bounds).sum() < len(bounds):
+        return np.nan
+    return float(np.nanmax([*bounds, *(row["k_N_per_m"] for row in cases)]))
 
 
 def _reason(cases: list[dict], span: dict[str, tuple]) -> str:
-    """Return why k or c of a method is not resolved, from the reasons of its seeds."""
+    """Return why k or c of a method is not resolved, or weak, from the reasons of its seeds."""
     if np.isfinite(span["k"][0]):
         if np.isfinite(span["c"][0]) or cases[0]["method"] not in COMPARED_DAMPING:
-            return ""
+            return _weak(cases)
         column = "c_N_s_per_m"
     else:
         column = "k_N_per_m"
-    missing = [row for row in cases if not np.isfinite(row[column])]
-    reasons = [str(row.get("reason") or "") for row in missing]
+    missing = [row for row in cases if row["flag"] or not np.isfinite(row[column])]
+    reasons = [str(row["flag"] or row["reason"] or "") for row in missing]
     stated = next((reason for reason in reasons if reason), "no value")
     if len(missing) == len(cases):
         return stated
     return f"not resolved in {len(missing)} of {len(cases)} seeds: {stated}"
 
 
-def _flag(cases: list[dict]) -> str:
-    """Return the first flag of the seeds and in how many there is one."""
-    flags = [str(row["flag"]) for row in cases if row.get("flag")]
-    return f"{len(flags)} of {len(cases)} seeds: {flags[0]}" if flags else ""
+def _weak(cases: list[dict]) -> str:
+    """Return why the k of a method is weak in more than half of the seeds that resolve it."""
+    found = [row for row in cases if np.isfinite(row["k_N_per_m"]) and not row["flag"]]
+    weak = [row for row in found if row["quality"] == "weak"]
+    return f"{WEAK}{weak[0]['reason']}" if 2 * len(weak) > len(found) else ""
+
+
+def counted(texts: Sequence[str]) -> str:
+    """Return the first text of the seeds and in how many there is one, or nothing."""
+    there = [text for text in texts if text]
+    return f"{len(there)} of {len(texts)} seeds: {there[0]}" if there else ""
 
 
 def collapse_rows(summary: list[dict], points_per_gap: int = 2) -> list[dict]:

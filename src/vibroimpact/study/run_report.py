@@ -11,7 +11,7 @@ import numpy as np
 from vibroimpact.records import read_table
 from vibroimpact.whole_file import problem_of
 
-from .equivalent_table import NOT_MOVED
+from .reasons import NOT_MOVED, agreement_sentence
 
 # A failed job in the log that Snakemake writes.
 FAILED = re.compile(r"^Error in rule (?P<rule>[^\s:]+).*:\n(?P<about>(?:    .*\n)*)", flags=re.M)
@@ -43,11 +43,13 @@ def headline(rows: Sequence[dict]) -> str:
         own = [row for row in moved if (row["group"], row["direction"]) == (group, direction)]
         name = "" if len(places) == 1 else f"{group} in {direction}: "
         parts.append(name + _stiffness_range([row for row in own if row["gap_m"] == gap]))
-    agreed = sum(row["agreement_k"] == "agree" for row in moved)
-    return (
-        f"{'; '.join(parts)} (gap {1e3 * gap:.2g} mm). The methods agree on k in {agreed} of"
-        f" {len(moved)} {'cases' if len(places) > 1 else 'pairs of load and gap'}"
-    )
+    kinds = [
+        "bounded" if np.isfinite(row.get("k_bound", np.nan)) else row["agreement_k"]
+        for row in moved
+    ]
+    cases = "cases" if len(places) > 1 else "pairs of load and gap"
+    found = agreement_sentence("k", kinds, cases)
+    return f"{'; '.join(parts)} (gap {1e3 * gap:.2g} mm). {found[0].upper()}{found[1:]}"
 
 
 def _stiffness_range(rows: Iterable[dict]) -> str:
@@ -73,13 +75,15 @@ def flag_sentences(rows: Sequence[dict], table: str = "equivalent.csv") -> list[
     """
     flags: dict[tuple, str] = {}
     for row in rows:
+        if row.get("reason_k") == NOT_MOVED:
+            continue
         case = tuple(row.get(key) for key in CASE_KEYS)
         flags[case] = flags.get(case, "") or str(row.get("flag", ""))
     found = [flag for flag in flags.values() if flag]
     if not found:
         return []
     return [
-        f"Doubtful: {len(found)} of {len(flags)} cases have a flag in {table}, the first:"
+        f"Flagged: {len(found)} of {len(flags)} cases have a flag in {table}, the first:"
         f" {found[0]}."
     ]
 

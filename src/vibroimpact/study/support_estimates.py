@@ -21,6 +21,9 @@ ABOUT = {
     "quality": (None, "ok, weak or unresolved"),
     "note": (None, "reason for the quality"),
     "flag": (None, "what makes the estimate doubtful beyond its standard error"),
+    "k_bound": ("N m-1", "upper bound of the stiffness where it does not differ from 0"),
+    "contact_fraction": ("1", "time in contact of the support that is touched most"),
+    "caution": (None, "what else is to be known of the case, whatever the method"),
 }
 
 
@@ -82,6 +85,7 @@ class SupportEstimates(Mapping[str, Estimate]):
             place = f"group {group} in {direction}"
             lines.append(f"{place:<26} {'k N/m':>18} {'c N s/m':>16}  quality")
             lines += map(_line, self.of(group, direction).estimates)
+        lines += dict.fromkeys(each.caution for each in self.estimates if each.caution)
         return "\n".join(lines)
 
     def to_dataset(self) -> xr.Dataset:
@@ -113,6 +117,8 @@ def _line(estimate: Estimate) -> str:
     k = _with_error(estimate.k, estimate.k_standard_error)
     c = _with_error(estimate.c, estimate.c_standard_error)
     quality = estimate.quality + (f", flagged: {estimate.flag}" if estimate.flag else "")
+    if np.isfinite(estimate.k_bound):
+        quality += f", k < {estimate.k_bound:.3g} N/m"
     return f"{estimate.method:<26} {k:>18} {c:>16}  {quality}"
 
 

@@ -19,6 +19,8 @@ from vibroimpact.stopwatch import Stopwatch
 from .cases import Case
 from .simulation import simulate_cases
 
+SYNTHETIC = "simulated"  # how the source of such a campaign begins
+
 
 def synthetic_campaign(
     config: Any, model: ModalModel, loads: Sequence[float], stopwatch: Stopwatch | None = None
@@ -59,7 +61,7 @@ def synthetic_campaign(
         config.record.sampling_frequency_Hz,
         start_up="stationary",
         source=(
-            f"simulated: gap {config.overlay.gap_ratio:g} times the study's, noise"
+            f"{SYNTHETIC}: gap {config.overlay.gap_ratio:g} times the study's, noise"
             f" {config.overlay.noise:g}"
         ),
     )

@@ -19,6 +19,7 @@ def head(springs: SpringSet, unit: UnitSystem, mark: str, extra: str = "") -> li
     mark: what begins a comment. extra: a sentence on how to use the file.
     """
     sentences = [
+        *(f"WARNING: {sentence}." for sentence in springs.warnings),
         f"Springs and dampers to ground, written by vibroimpact. Units: {unit.name}.",
         *springs.notes,
         *(f"LEFT OUT: {sentence}." for sentence in springs.left_out),

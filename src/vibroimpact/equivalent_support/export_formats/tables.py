@@ -49,8 +49,12 @@ def rows(springs: SpringSet, unit: UnitSystem) -> list[dict[str, Any]]:
 
 
 def csv_text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
-    """Return the CSV text: a header and the rows; c is empty where it is not resolved."""
+    """Return the CSV text: a header and the rows; c is empty where it is not resolved.
+
+    Warnings stand before the header, in lines that begin with #.
+    """
     file = io.StringIO()
+    file.writelines(f"# WARNING: {sentence}.\n" for sentence in springs.warnings)
     writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows(springs, unit))
@@ -61,6 +65,7 @@ def json_text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
     """Return the JSON text: units, notes, what was left out, and the rows."""
     content = {
         "units": unit.name,
+        "warnings": springs.warnings,
         "notes": springs.notes,
         "left_out": springs.left_out,
         "springs": rows(springs, unit),

@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.figures.style import BLACK, GREY, METHODS, ORANGE, PALE, shown
-from vibroimpact.reports.equivalent_answer import AGREEMENT, COMPARED, Answer, Value
-from vibroimpact.reports.method_names import method_name
+from vibroimpact.identify.method_names import method_name
+from vibroimpact.reports.equivalent_answer import COMPARED, Answer, Value
+from vibroimpact.reports.study_tables import agreement_in_words
+from vibroimpact.study.method_agreement import AGREEMENT
 
 from .plot import (
     Plot,
@@ -29,10 +31,18 @@ from .plot import (
 COLUMNS = {"k": "k_N_per_m", "c": "c_N_s_per_m"}
 UNITS = {"k": "N/m", "c": "N s/m"}
 WORDS = {"k": "stiffness", "c": "damping"}
+BOUNDS = {"k": " Grey triangles: what k is below where the tube hardly touches.", "c": ""}
 PREDICTED = ("statistical_linearisation", "secant")
 CONTROLS = ("gap", "place")
-AGREEMENTS = ("unresolved", "spread", "agree")
-SIGNS = {"agree": "✓", "spread": "≠", "unresolved": "–"}
+# Kind of a cell: (sign, colour, in words), in the order of the colour scale.
+CELLS = {
+    "unresolved": ("–", PALE, "not resolved"),
+    "bounded": ("<", PALE, "the tube hardly touches, k has an upper bound"),
+    "differ": ("✗", "#D55E00", "differ, none recommended"),
+    "spread": ("≠", ORANGE, "over 25 % apart"),
+    "partial": ("(✓)", "#CFE6F5", "not all resolve it, those that do agree"),
+    "agree": ("✓", "#9CC9E8", "agree"),
+}
 
 
 def equivalent_plots(
@@ -63,14 +73,15 @@ def _against_load(quantity, answers, summary, load_label):
             for method in _methods(rows)
             if (trace := _method(quantity, method, rows, unit_of(load_label))) is not None
         ]
-        frames[key] = [*_recommended(quantity, chosen, unit_of(load_label)), *traces]
+        bounds = _bounds(chosen, unit_of(load_label)) if quantity == "k" else []
+        frames[key] = [*_recommended(quantity, chosen, unit_of(load_label)), *traces, *bounds]
     return Plot(
         f"equivalent_{quantity}",
         f"Equivalent {WORDS[quantity]} {quantity}",
         (
             f"Black with its band: the recommended {quantity}, median of the compared methods, and"
-            " its range over seeds; markers: each method with its own range. Where there is no"
-            " black line the methods do not all resolve the value; the table below says why."
+            f" its range over seeds; markers: each method with its own range.{BOUNDS[quantity]}"
+            " Where there is no black line no value is recommended; the table below says why."
         ),
         layout(
             load_axis(load_label, [row.load_rms_N for row in answers]),
@@ -174,6 +185,23 @@ def _recommended(quantity: str, chosen: Sequence[Answer], load_unit: str) -> lis
     ]
 
 
+def _bounds(chosen: Sequence[Answer], load_unit: str) -> list[dict[str, Any]]:
+    """Return the trace of the upper bounds of k in a list, empty without any."""
+    rows = [row for row in chosen if row.bounded]
+    if not rows:
+        return []
+    trace = points(
+        "upper bound",
+        numbers([row.load_rms_N for row in rows]),
+        in_unit("k_N_per_m", [row.bound for row in rows]),
+        f"%{{customdata}}, at %{{x:.3g}} {load_unit}",
+        GREY,
+        "v",
+        customdata=[row.k.reason for row in rows],
+    )
+    return [trace | {"mode": "markers"}]
+
+
 def _method(quantity, method, rows, load_unit):
     """Return the trace of one method, None where it has no value at any load."""
     column = COLUMNS[quantity]
@@ -223,7 +251,8 @@ def _ratios(answers, summary, load_label):
         "Each method over the recommended value",
         (
             "k (solid) and c (dotted, open) of the compared methods divided by the recommended"
-            f" value. They agree inside the shaded band, within {100 * AGREEMENT:.0f} %."
+            f" value. They agree inside the shaded band, within {100 * AGREEMENT:.0f} %. Pole and"
+            " deflection shape read the main peak; the broadband PSD reads the whole band."
         ),
         layout(
             load_axis(load_label, [row.load_rms_N for row in answers]),
@@ -286,10 +315,10 @@ def _ratio(quantity, method, rows, centre):
 def _agreement(quantity, answers, load_label):
     """Return the Plot of the agreement by gap and load: one cell per case, with its reason."""
     gaps, pairs = places_of(answers)
-    frames = {}
+    frames, kinds = {}, list(CELLS)
     for index, pair in enumerate(pairs):
         chosen = {
-            (row.gap_m, row.load_rms_N): getattr(row, quantity)
+            (row.gap_m, row.load_rms_N): row
             for row in answers
             if (row.group, row.direction) == pair
         }
@@ -300,20 +329,26 @@ def _agreement(quantity, answers, load_label):
                 "type": "heatmap",
                 "x": [f"{load:.3g}" for load in loads],
                 "y": [f"{gap * 1e3:.3g}" for gap in gaps],
-                "z": [[AGREEMENTS.index(_agree(cell)) for cell in row] for row in cells],
-                "text": [[SIGNS[_agree(cell)] for cell in row] for row in cells],
+                "z": [[kinds.index(_kind(quantity, cell)) for cell in row] for row in cells],
+                "text": [[CELLS[_kind(quantity, cell)][0] for cell in row] for row in cells],
                 "customdata": [[_reason(quantity, cell) for cell in row] for row in cells],
                 "texttemplate": "%{text}",
                 "hovertemplate": "load %{x}, gap %{y} mm<br>%{customdata}<extra></extra>",
                 "zmin": 0,
-                "zmax": 2,
-                "colorscale": [[0, PALE], [0.5, ORANGE], [1, "#9CC9E8"]],
+                "zmax": len(CELLS) - 1,
+                "colorscale": [
+                    [number / (len(CELLS) - 1), colour]
+                    for number, (_, colour, _) in enumerate(CELLS.values())
+                ],
                 "showscale": False,
                 "xgap": 2,
                 "ygap": 2,
             }
         ]
-    legend = "✓ agree (blue), ≠ differ by more than 25 % (orange), – not resolved (grey)"
+    seen = {_kind(quantity, row) for row in answers}
+    legend = ", ".join(
+        f"{sign} {words}" for kind, (sign, _, words) in CELLS.items() if kind in seen
+    )
     return Plot(
         f"agreement_{quantity}",
         f"Do the methods agree on {quantity}?",
@@ -331,15 +366,21 @@ def _agreement(quantity, answers, load_label):
     )
 
 
-def _agree(cell: Value | None) -> str:
-    return cell.agreement if cell is not None and cell.agreement in AGREEMENTS else "unresolved"
+def _kind(quantity: str, row: Answer | None) -> str:
+    """Return the kind of a cell, a key of CELLS."""
+    if row is None:
+        return "unresolved"
+    agreement: str = getattr(row, quantity).agreement
+    return "bounded" if row.bounded else agreement
 
 
-def _reason(quantity: str, cell: Value | None) -> str:
-    if cell is None:
+def _reason(quantity: str, row: Answer | None) -> str:
+    if row is None:
         return "not in the study"
+    cell: Value = getattr(row, quantity)
     value = f"{quantity} = {cell.value:.3g} {UNITS[quantity]}, " if cell.resolved else ""
-    return f"{value}{cell.agreement}" + (f": {cell.reason}" if cell.reason else "")
+    words = cell.reason or agreement_in_words(row, quantity)
+    return value + words
 
 
 def _value(value: Any) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -28,6 +29,7 @@ SYMBOLS = {
 }
 GRID = "#E6E6E6"
 PLAIN_DECADES = 4.0
+EMPTY_WIDTH = 36  # characters of a line in a plot without traces, which a phone shows uncut
 
 
 @dataclass(frozen=True)
@@ -86,7 +88,7 @@ class Plot:
             "frames": self.frames,
             "controls": self.controls,
             "shared": self.shared,
-            "empty": self.empty,
+            "empty": "<br>".join(textwrap.wrap(self.empty, EMPTY_WIDTH)),
             "cursor": self.cursor,
             "ranges": self.ranges,
         }

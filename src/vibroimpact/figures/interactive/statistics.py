@@ -62,6 +62,7 @@ RESIDUALS = {
     "energy_residual": ("with the work of the contact forces", BLUE, "o"),
     "fixed_point_residual": ("contact iteration (bound)", GREY, "x"),
 }
+LEAST_RESIDUAL = 1.0e-12  # of the input work: less is round-off
 
 
 def contact_plots(
@@ -306,7 +307,7 @@ def energy_plot(
             for gap in statistics.gaps
             for load in statistics.loads
         ]
-        rows = [row for row in rows if row[2] > 0.0]
+        rows = [row for row in rows if row[2] >= LEAST_RESIDUAL]
         if not rows:
             continue
         loads, shown_gaps, values = (list(part) for part in zip(*rows, strict=True))
@@ -333,7 +334,8 @@ def energy_plot(
         (
             "Energy that the simulation fails to account for, over the work of the drive: the worst"
             " seed of every load and gap. Markers below the dashed line of their colour are within"
-            " what the time step allows; exact zeros, where nothing touches, are left out."
+            f" what the time step allows. Less than {LEAST_RESIDUAL:g}, as where nothing touches,"
+            " is left out."
         ),
         layout(
             load_axis(load_label, statistics.loads),

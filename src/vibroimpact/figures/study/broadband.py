@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.cm import ScalarMappable
+from scipy.signal import find_peaks
 
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import (
@@ -23,6 +24,9 @@ from .linear_limits import contact_stiffness
 from .psd_table import driven_sensor, unit_force_psd
 
 RANGE_MEMBERS = 9
+# Of a comparison of peaks: bins that are averaged, least height of a peak over its valleys in ln of
+# the PSD, and the bins to both sides in which the other spectrum may have its own.
+SMOOTHED, PROMINENCE, NEAR_BINS = 5, np.log(4.0), 20
 
 
 def figure_12_broadband(config, model, curves, spectra, rows):
@@ -37,13 +41,14 @@ def figure_12_broadband(config, model, curves, spectra, rows):
         " seed: simulated with contact (black), and the linear tube whose bilateral support (k, c)"
         " correlates best with it over the band (green). Thin, coloured: linear tubes with other"
         " stiffnesses, no damping added, under the same force. Left: the load at which the main"
-        " peak is widest; right: the largest load."
+        " peak is widest; right: the largest load. Above: the largest factor between both at a"
+        " peak."
     )
     cases = first_seed(curves)
     loads = sorted({transition_load(rows), max(cases)})
     sheet = Sheet(
         "figure_12_broadband",
-        "A linear tube with the right support has nearly the same spectrum",
+        "Spectrum with contact and of the best linear tube",
         caption,
         [[f"{load:g} N" for load in loads]],
         size=(7.6, 4.6),
@@ -54,17 +59,14 @@ def figure_12_broadband(config, model, curves, spectra, rows):
     shape = model.sensor_shapes[:, model.sensor_names.index(sensor)]
     for load in loads:
         axes, case = sheet.axes[f"{load:g} N"], cases[load]
-        found = next(
-            (
-                row
-                for row in rows
-                if row["method"] == "broadband"
-                and row["load_rms_N"] == load
-                and row["seed"] == case.seed
-            ),
-            None,
-        )
-        _panel(
+        found = [
+            row
+            for row in rows
+            if row["method"] == "broadband"
+            and row["load_rms_N"] == load
+            and row["seed"] == case.seed
+        ]
+        apart = _panel(
             sheet,
             axes,
             config,
@@ -72,7 +74,8 @@ def figure_12_broadband(config, model, curves, spectra, rows):
             (curves[case], spectra[case]),
             (stiffness, shape, load, sensor),
         )
-        axes.set_title(f"load {load:.3g} N RMS\n{_values(found)}")
+        peaks = "" if apart is None else f"\npeaks within a factor of {apart:.1f}"
+        axes.set_title(f"load {load:.3g} N RMS\n{_values(found)}{peaks}")
         sheet.legend(axes, loc="lower left")
     for load in loads[1:]:
         sheet.axes[f"{load:g} N"].set_ylabel("")
@@ -86,8 +89,11 @@ def figure_12_broadband(config, model, curves, spectra, rows):
 
 def _values(found):
     """Return the identified support in words."""
-    if found is None or not np.isfinite(found["k_N_per_m"]):
+    if len(found) > 1:
+        return "each support with its own k and c"
+    if not found or not np.isfinite(found[0]["k_N_per_m"]):
         return "no k resolved"
+    found = found[0]
     damping = (
         f", c = {number(found['c_N_s_per_m'])} N s/m"
         if np.isfinite(found["c_N_s_per_m"])
@@ -97,7 +103,10 @@ def _values(found):
 
 
 def _panel(sheet, axes, config, model, datasets, family):
-    """Draw range, target and best member for one load."""
+    """Draw range, target and best member for one load.
+
+    Return the largest factor between the peaks of both, None without a best member.
+    """
     (fitted, spectrum), (stiffness, shape, load, sensor) = datasets, family
     low, high = config.identification.broadband.band_Hz
     frequency = spectrum["frequency"].values
@@ -129,7 +138,10 @@ def _panel(sheet, axes, config, model, datasets, family):
         linewidth=1.0,
         label="with contact (target)",
     )
+    apart = None
     if "broadband_curve" in fitted:
+        place, best = (fitted[name].values for name in ("broadband_frequency", "broadband_curve"))
+        apart = peak_factor(np.interp(place, frequency, target), best)
         sheet.line(
             axes,
             ("frequency_Hz", fitted["broadband_frequency"].values),
@@ -142,3 +154,19 @@ def _panel(sheet, axes, config, model, datasets, family):
     axes.set_yscale("log")
     axes.set_xlim(low, high)
     axes.set_ylim(0.05 * target.min(), 30.0 * target.max())
+    return apart
+
+
+def peak_factor(target, best):
+    """Return the largest factor between two PSDs (bin,) at the peaks of either; 1 for no peak.
+
+    The target is smoothed over SMOOTHED bins; a peak is compared with the largest value near it.
+    """
+    window = np.ones(SMOOTHED) / SMOOTHED
+    levels = [np.log(np.convolve(psd, window, mode="valid")) for psd in (target, best)]
+    places = np.concatenate([find_peaks(level, prominence=PROMINENCE)[0] for level in levels])
+    factors = [1.0]
+    for place in places:
+        near = slice(max(place - NEAR_BINS, 0), place + NEAR_BINS + 1)
+        factors.append(float(np.exp(abs(levels[0][near].max() - levels[1][near].max()))))
+    return max(factors)

@@ -45,7 +45,7 @@ TERMS = {
     "elastic": ("elastic, tube", GREEN, "-"),
     "contact_potential": ("elastic, contacts", PINK, "-"),
 }
-FLOOR = 1.0e-18  # exact zeros (no contact) are drawn here: a logarithmic axis has no zero
+FLOOR = 1.0e-12  # of the input work: less, as exact zeros without contact, is drawn here
 
 
 def case_of_energies(cases):
@@ -82,9 +82,9 @@ def energy_balance(config, records):
         f" the work of the contact forces ({work}), with the potential energy of the contacts in"
         " its place (it measures the time step: what is lost at each crossing of the gap), and the"
         " bound of the error left in the implicit contact forces; dashed: accepted at"
-        f" {config.integration.steps_per_second:g} steps per second. Exact zeros, where nothing"
-        f" touches, are drawn at {FLOOR:g}. Right: energies during the case of the largest load"
-        f" ({case.load_rms_N:g} N, gap"
+        f" {config.integration.steps_per_second:g} steps per second. What is below {FLOOR:g}, as"
+        " the zeros where nothing touches, is drawn there. Right: energies during the case of the"
+        f" largest load ({case.load_rms_N:g} N, gap"
         f" {gap_label(case.gap_m, outer_width(config.structure.section))}, seed {case.seed});"
         " negative times are the start-up before the record."
     )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import (
     BLACK,
@@ -14,11 +16,11 @@ from vibroimpact.figures.style import (
     gap_label,
 )
 from vibroimpact.geometry.sections import outer_width
+from vibroimpact.study.method_agreement import COMPARED, collapse_rows, summary_rows
 
 from .linear_limits import contact_stiffness
 from .seed_scatter import medians, over_seeds
 
-COMPARED = ("lscf", "ods", "broadband")
 PREDICTED = ("statistical_linearisation", "secant")
 
 MOST_COLUMNS = 4  # gaps side by side; more begin another block below
@@ -50,7 +52,7 @@ def figure_13_equivalent_support(config, model, rows):
     mosaic = _in_blocks(list(panels.values()))
     sheet = Sheet(
         "figure_13_equivalent_support",
-        "Equivalent stiffness and damping by independent methods",
+        "Equivalent stiffness and damping by every method",
         caption,
         mosaic,
         size=(max(2.6 + 2.6 * len(mosaic[0]), 6.4), 3.2 * len(mosaic)),
@@ -133,7 +135,13 @@ def _methods(sheet, axes, rows, column, methods):
             zorder=3 if method in OPEN_METHODS else 4,
         )
     if not axes.get_xlabel():
-        sheet.note(axes, "nothing resolved", "load_rms_N", column)
+        sheet.note(axes, _why_empty(rows), "load_rms_N", column)
+
+
+def _why_empty(rows):
+    """Return why no compared method has a value among rows of the consistency table."""
+    reasons = [row["reason"] for row in rows if row["method"] in COMPARED and row["reason"]]
+    return f"No method resolves it. {reasons[0] if reasons else ''}".strip()
 
 
 def _in_blocks(pairs):
@@ -204,7 +212,7 @@ def collapse(config, model, rows):
     keys = {place: tuple(f"{name}, {' in '.join(place)}" for name in "kc") for place in places}
     sheet = Sheet(
         "collapse",
-        "All gaps fall on one curve in load / gap",
+        _collapse_title(rows),
         caption,
         [list(pair) for pair in keys.values()],
         size=(7.6, 1.0 + 3.2 * len(places)),
@@ -223,6 +231,18 @@ def collapse(config, model, rows):
     handles, labels = axes[0].get_legend_handles_labels()
     sheet.figure.legend(handles, labels, loc="outside lower center", ncols=3)
     return [sheet]
+
+
+def _collapse_title(rows):
+    """Return the title of the figure: how far the curves of the gaps are apart."""
+    ratios = [
+        row["k_ratio"]
+        for row in collapse_rows(summary_rows(rows))
+        if row["method"] in COMPARED and np.isfinite(row["k_ratio"])
+    ]
+    if not ratios:
+        return "Equivalent support against load / gap"
+    return f"k of the gaps at equal load / gap: within {100.0 * (max(ratios) - 1.0):.0f} %"
 
 
 def _collapse_of(sheet, axes, config, rows):
@@ -263,7 +283,7 @@ def _collapse_of(sheet, axes, config, rows):
             )
     for place, column in zip(axes, ("k_N_per_m", "c_N_s_per_m"), strict=True):
         if not place.get_xlabel():
-            sheet.note(place, "nothing resolved", "load_over_gap_N_per_m", column)
+            sheet.note(place, _why_empty(rows), "load_over_gap_N_per_m", column)
         place.set_xscale("log")
     axes[0].set_yscale("log")
     axes[1].axhline(0.0, color=GREY, linewidth=0.8)

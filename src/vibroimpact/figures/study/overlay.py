@@ -9,8 +9,9 @@ from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import BLACK, BLUE, GREEN, RED, gap_label, label_of
 from vibroimpact.geometry.sections import outer_width
 from vibroimpact.spectra.welch import psd_statistics, segment_spectra
+from vibroimpact.study.synthetic_campaign import SYNTHETIC
 
-from .linear_limits import HELD, linear_modes, shown_band
+from .linear_limits import contact_stiffness, linear_modes, shown_band
 from .psd_table import driven_sensor
 
 LEVELS = 4
@@ -27,13 +28,14 @@ def figure_05_overlay(config, model, responses, campaign):
     gap = float(campaign["gap"].values[records[0]])
     diameter = outer_width(config.structure.section)
     source = str(campaign.attrs.get("source", "")) or "no source given"
+    title = "Synthetic campaign" if source.startswith(SYNTHETIC) else "Campaign"
     caption = (
         f"PSD of acceleration at {sensor} for {len(records)} loads: campaign (green; gap"
         f" {gap_label(gap, diameter)}; {source}) over the simulation of the study (blue; gap"
         f" {gap_label(responses.gap_m, diameter)}, nearest load, all seeds). Thick: mean over"
         " segments; thin, dotted: smallest and largest segment (extremes of blocks of"
         f" {ENVELOPE_HZ:g} Hz). Vertical: modes of the driven plane of the tube, free (black,"
-        " dashed) and held at the supports (red, dashed)."
+        " dashed) and in full contact (red, dashed)."
     )
     keys = [f"record {index}" for index in records]
     mosaic = [keys[row : row + 2] for row in range(0, len(keys), 2)]
@@ -41,7 +43,7 @@ def figure_05_overlay(config, model, responses, campaign):
         mosaic[-1].append(".")
     sheet = Sheet(
         "figure_05_overlay",
-        "Campaign over simulation",
+        f"{title} over simulation",
         caption,
         mosaic,
         size=(9.0, 0.6 + 3.0 * len(mosaic)),
@@ -160,8 +162,9 @@ def _spectrum(sheet, axes, band, frequency, statistics, curve, tags, colour):
 
 
 def _mark_modes(sheet, axes, model, band):
-    """Mark the modes of the driven plane, free and held at the supports."""
-    for name, k, colour in (("free modes", 0.0, BLACK), ("clamped modes", HELD, RED)):
+    """Mark the modes of the driven plane, free and in full contact."""
+    stiff = contact_stiffness(model)
+    for name, k, colour in (("free modes", 0.0, BLACK), ("modes in full contact", stiff, RED)):
         values = [value for value in linear_modes(model, k, 12) if band[0] < value < band[1]]
         for index, value in enumerate(values):
             sheet.mark(

@@ -19,6 +19,7 @@ from vibroimpact.figures.style import (
 )
 from vibroimpact.geometry.sections import outer_width
 from vibroimpact.identify.peak import LEVELS, level_edges
+from vibroimpact.identify.stabilisation import STABLE_DAMPING, STABLE_FREQUENCY
 from vibroimpact.linear.poles import first_pole
 
 from .cases_of_gap import first_seed, spread_loads, transition_load
@@ -27,6 +28,8 @@ from .psd_table import driven_sensor
 from .seed_scatter import over_seeds
 
 SHOWN_PEAKS = 5
+NEAR = 1.6  # times the frequency of the main peak: what a chart shows to both sides
+FEWEST_ORDERS = 5  # with a stable pole, which make a column
 POLE_METHODS = ("peak_half", "peak_quarter", "peak_25th", "lscf")
 
 
@@ -192,19 +195,26 @@ def figure_09_stabilisation(config, curves, spectra, rows):
     They are the load of the widest peak and the largest load.
     """
     cases = first_seed(curves)
-    loads = sorted({transition_load(rows), max(cases)})
+    stable = {
+        load for load, case in cases.items() if _orders_of_pole(curves[case]) >= FEWEST_ORDERS
+    }
+    chosen = [row for row in rows if row["load_rms_N"] in stable] or rows
+    loads = sorted({transition_load(chosen), max(cases)})
     sensor = driven_sensor(config, config.identification.response_point)
     caption = (
         "Stabilisation charts of the output-only LSCF, first seed, gap"
         f" {gap_label(next(iter(curves)).gap_m, outer_width(config.structure.section))}: poles"
         f" by model order over the PSD of displacement at {sensor} (grey, logarithmic, right axis)."
-        " A pole is stable when frequency (1 %), damping (10 %) and participation keep their"
-        " values from the order below. Circled: the poles whose median is taken for the main peak."
-        " Left: the load at which the peak is widest; right: the largest load."
+        " Poles near the main peak alone. A pole is stable when"
+        f" frequency ({STABLE_FREQUENCY:.0%}), damping ({STABLE_DAMPING:.0%}) and participation"
+        " keep their values from the order below. Circled: the pole that is taken; line: its"
+        f" column, stable in {FEWEST_ORDERS} or more orders at {len(stable)} of {len(cases)} loads."
+        f" Shown: {'of these, ' if stable else ''}the load at which the peak is widest, and the"
+        " largest load."
     )
     sheet = Sheet(
         "figure_09_stabilisation",
-        "LSCF: poles that stay put as the model order grows",
+        "LSCF poles of the main peak, by model order",
         caption,
         [[f"{load:g} N" for load in loads]],
         size=(7.6, 4.2),
@@ -219,7 +229,6 @@ def figure_09_stabilisation(config, curves, spectra, rows):
             spectra[cases[load]],
             sensor,
         )
-        sheet.axes[f"{load:g} N"].set_title(f"load {load:.3g} N RMS")
     for key in [f"{load:g} N" for load in loads][1:]:
         sheet.axes[key].set_ylabel("")
     handles, labels = sheet.axes[f"{loads[0]:g} N"].get_legend_handles_labels()
@@ -228,9 +237,43 @@ def figure_09_stabilisation(config, curves, spectra, rows):
     return [sheet]
 
 
+def _pole_taken(fitted):
+    """Return (frequency in Hz of the poles taken, NaN for none, places of the poles).
+
+    At each order taken it is the pole nearest to the fitted peak.
+    """
+    curve = fitted["peak_curve"].values[0]
+    order, place = fitted["chart_order"].values, fitted["chart_frequency"].values
+    if not np.isfinite(curve).any():
+        return np.nan, []
+    peak = fitted["low_frequency"].values[np.nanargmax(curve)]
+    chosen = []
+    for taken in np.unique(fitted["chart_orders_taken"].values):
+        here = np.flatnonzero((order == taken) & (fitted["chart_damping_ratio"].values > 0.0))
+        if here.size:
+            chosen.append(here[np.argmin(np.abs(place[here] - peak))])
+    return (float(np.median(place[chosen])) if chosen else np.nan), chosen
+
+
+def _orders_of_pole(fitted):
+    """Return in how many orders a pole within STABLE_FREQUENCY of the one taken is stable."""
+    if "chart_order" not in fitted:
+        return 0
+    taken, _ = _pole_taken(fitted)
+    own = np.abs(fitted["chart_frequency"].values / taken - 1.0) < STABLE_FREQUENCY
+    for name in ("frequency", "damping", "participation"):
+        own &= fitted[f"chart_stable_{name}"].values.astype(bool)
+    return np.unique(fitted["chart_order"].values[own]).size
+
+
 def _chart(sheet, axes, config, fitted, spectrum, sensor):
     """Draw one chart over the PSD."""
-    low, high = config.identification.lscf.band_Hz
+    low, high = config.identification.peak_search_Hz
+    taken, own = _pole_taken(fitted) if "chart_order" in fitted else (np.nan, [])
+    if own:
+        low, high = max(low, taken / NEAR), min(high, taken * NEAR)
+    load = f"load {spectrum.attrs['load_rms_N']:.3g} N RMS"
+    axes.set_title(load)
     frequency = spectrum["frequency"].values
     inside = (frequency >= low) & (frequency <= high)
     behind = axes.twinx()
@@ -250,7 +293,7 @@ def _chart(sheet, axes, config, fitted, spectrum, sensor):
     axes.patch.set_visible(False)
     axes.set_xlim(low, high)
     if "chart_order" not in fitted:
-        sheet.note(axes, "no pole found", "frequency_Hz", "model_order")
+        sheet.note(axes, "no pole found near the main peak", "frequency_Hz", "model_order")
         return
     order, place = fitted["chart_order"].values.astype(float), fitted["chart_frequency"].values
     flags = {
@@ -280,30 +323,24 @@ def _chart(sheet, axes, config, fitted, spectrum, sensor):
             label=name,
             **style,
         )
-    _circle_taken(sheet, axes, fitted, place, order, physical)
+    if own:
+        _mark_taken(sheet, axes, taken, place[own], order[own])
+        found = f"stable in {_orders_of_pole(fitted)} of {np.unique(order).size} orders"
+        axes.set_title(f"{load}\n{taken:.2f} Hz, {found}")
 
 
-def _circle_taken(sheet, axes, fitted, place, order, physical):
-    """Circle the poles that were used: at each order, the one nearest to the fitted peak."""
-    curve = fitted["peak_curve"].values[0]
-    peak = (
-        fitted["low_frequency"].values[np.nanargmax(curve)] if np.isfinite(curve).any() else np.nan
+def _mark_taken(sheet, axes, taken, place, order):
+    """Mark the pole that is taken: a line at its frequency, and a circle at each of its orders."""
+    sheet.mark(axes, "frequency_Hz", taken, "pole taken", color=RED, linewidth=0.8)
+    sheet.line(
+        axes,
+        ("frequency_Hz", place),
+        ("model_order", order),
+        "taken",
+        linestyle="none",
+        marker="o",
+        markersize=9,
+        markerfacecolor="none",
+        color=RED,
+        label="taken for the main peak",
     )
-    chosen = []
-    for taken in np.unique(fitted["chart_orders_taken"].values):
-        here = np.flatnonzero(physical & (order == taken))
-        if here.size and np.isfinite(peak):
-            chosen.append(here[np.argmin(np.abs(place[here] - peak))])
-    if chosen:
-        sheet.line(
-            axes,
-            ("frequency_Hz", place[chosen]),
-            ("model_order", order[chosen]),
-            "taken",
-            linestyle="none",
-            marker="o",
-            markersize=9,
-            markerfacecolor="none",
-            color=RED,
-            label="taken for the main peak",
-        )

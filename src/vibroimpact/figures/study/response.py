@@ -99,7 +99,7 @@ def figure_07_overlay_of_loads(config, model, responses):
     )
     sheet = Sheet(
         "figure_07_overlay_of_loads",
-        "From the free response to the supported one",
+        "Spectra of all loads between the linear limits",
         caption,
         size=(7.6, 4.6),
     )
@@ -161,7 +161,7 @@ def figure_08_load_and_stiffness(config, model, responses):
     )
     sheet = Sheet(
         "figure_08_load_and_stiffness",
-        "More load acts like a stiffer support",
+        "Load with contact beside stiffness without",
         caption,
         [["load", "stiffness"]],
         size=(7.6, 4.4),
@@ -228,7 +228,7 @@ def in_plane_share(config, responses):
     )
     sheet = Sheet(
         "in_plane_share",
-        "Driven out of plane, the tube also moves in plane",
+        "Motion across the driven direction",
         caption,
         size=(7.6, 4.2),
     )

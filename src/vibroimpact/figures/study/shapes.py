@@ -45,7 +45,7 @@ def figure_10_shapes(config, model, curves, rows):
     )
     sheet = Sheet(
         "figure_10_shapes",
-        "Deflection shape: the supports hold the tube more as the load grows",
+        "Deflection shape against load",
         caption,
         [["shape", "shape"], ["mac", "quadrature"]],
         size=(7.6, 6.2),
@@ -186,7 +186,7 @@ def figure_11_singular_values(config, curves):
     )
     sheet = Sheet(
         "figure_11_singular_values",
-        "Other shapes join the first one in the transition",
+        "Size of the other shapes beside the first",
         caption,
         size=(7.6, 4.2),
     )
