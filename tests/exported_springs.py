@@ -180,8 +180,9 @@ def _from_rows(rows):
 
 
 def csv_table(text):
-    """One row per point and direction."""
-    return _from_rows(csv.DictReader(io.StringIO(text)))
+    """One row per point and direction, after warnings in lines that begin with #."""
+    rows = [line for line in io.StringIO(text) if not line.startswith("#")]
+    return _from_rows(csv.DictReader(rows))
 
 
 def json_table(text):

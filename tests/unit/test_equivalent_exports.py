@@ -22,9 +22,8 @@ TANGENT = np.array([1.0, 1.0, 0.0]) / math.sqrt(2.0)
 def answer(supports, direction="y", k=K, c=C):
     """An answer with one group; None for what is not resolved."""
     spans = [Span() if value is None else Span(value, 0.9 * value, 1.2 * value) for value in (k, c)]
-    group = GroupAnswer(
-        "all", supports, direction, *spans, reason_k="too weak", reason_c="too short"
-    )
+    reasons = {"reason_k": "" if k else "too weak", "reason_c": "" if c else "too short"}
+    group = GroupAnswer("all", supports, direction, *spans, **reasons)
     return Answer("mine", "study", 5.0, 2.5e-4, (group,))
 
 
