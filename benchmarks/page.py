@@ -18,35 +18,36 @@ Written by `make benchmark`; do not edit. Numbers of `results/benchmark/benchmar
 `growth.csv`, `peers.csv` and `machine.csv`.
 
 The problem is the study's stand-in tube: a force in {BAND_HZ[0]:g} to {BAND_HZ[1]:g} Hz at 45 \
-degrees of the bend, two plates of five contact
-points, {GAP_M * 1e3:.3f} mm of gap. "Modes" counts free modes and the residual vectors that \
-carry the local flexibility
-of the contacts; these reach 130 kHz and set the step of every explicit method, so that one case \
-keeps free modes alone. 99 modes are the study's
-basis, 61 a smaller one (free modes to {SMALL_TO_HZ:g} Hz). At {LOAD_N:g} N RMS, the study's \
-highest load, a plate bears a force half of the time.
+degrees of the bend, two plates
+of five contact points, gap {GAP_M * 1e3:.3f} mm. At {LOAD_N:g} N RMS, the study's highest load, \
+a plate bears a force half
+of the time. "Modes" are free modes and the residual vectors of the contacts: 99 in the study, 61 \
+with
+free modes to {SMALL_TO_HZ:g} Hz. Residual vectors reach 130 kHz and set the step of every \
+explicit method; one
+case therefore has free modes alone.
 
-- Every code solves the same problem, and is checked before its time is quoted: displacement at \
-three sensors over {CHECK_S:g} s without contact,
-  over the first impacts (to {FIRST_IMPACTS_S:g} s), and its RMS over all of it; obstacles moved \
-off the axis, so that both directions touch.
-- Ours goes through its public path (`integrate_batch`): set-up, output filter, statistics, \
-energies and records included. The peers keep three
-  displacements. Forces are made beforehand for all.
-- A time is CPU time of one core, compiled beforehand. Ours and a peer run in turns in one \
-process; a ratio belongs to a pair measured next
-  to each other: median (smallest to largest). A short stretch of a slow peer is compared per \
-simulated second; it holds less
-  contact than a long record, which favours the peer.
-- Ours integrates eight runs side by side, one per element of a 512-bit vector. One run alone \
-fills one element of eight and costs nearly as
-  much as eight: it is about as fast as a plain compiled loop. The bits of a run do not depend \
-on how many run beside it. The plain loop, and JAX
-  without its batch, take one case after the other.
-- Ours steps as the plain loop, JAX and Exudyn do: Newmark, {RATE} steps per second. "At the \
-study's step" is the scheme and rate of
-  `config/study.yaml`; [what a step is worth](#what-a-step-is-worth) is below.
-- Absolute times are those of this machine. Compare ratios.
+- Every code solves the same problem. Its displacement at three sensors must agree before its time
+  counts: without contact ({CHECK_S:g} s), over the first impacts ({FIRST_IMPACTS_S:g} s), and in \
+RMS. Obstacles are off the
+  axis, so that both directions touch.
+- Times are CPU time of one core without compilation. Ours include set-up, output filter, \
+statistics,
+  energies and records (`integrate_batch`); the peers keep three displacements. Forces are made
+  beforehand.
+- A ratio comes from runs that alternate in one process: median (smallest to largest). Slow peers \
+run a
+  short stretch with less contact, which favours them.
+- Ours integrates eight runs in a 512-bit vector. One run alone costs nearly as much as eight. \
+The plain
+  loop, and JAX without its batch, take one case after the other.
+- Ours, the plain loop, JAX and Exudyn step with Newmark, {RATE} steps per second. "At the \
+study's step"
+  is the scheme and rate of `config/study.yaml` ([what a step is worth](#what-a-step-is-worth)).
+- The FMA peak is that of the core for the step's own arithmetic, without output filter, \
+statistics and
+  energies (`benchmarks/peak.py`).
+- Absolute times hold for this machine. Compare ratios.
 """
 
 GROWTH = {
@@ -157,11 +158,7 @@ def _steps(case, rows):
         f"{peer} {value:.0f}"
         for peer, value in {row["peer"]: row["peer_median"] for row in rows}.items()
     ]
-    return (
-        f"Nanoseconds per step and run of the codes that do the same step: {'; '.join(parts)}.\n"
-        if rows
-        else ""
-    )
+    return f"Nanoseconds per step and run: {'; '.join(parts)}.\n" if rows else ""
 
 
 def _peak(case, rows):
@@ -176,9 +173,8 @@ def _peak(case, rows):
         for row, (middle, low, high) in zip(found, shares, strict=True)
     ]
     return (
-        f"Of this core's FMA peak ours uses {', '.join(parts)}: the step's own arithmetic would"
-        f" take {found[0]['peer_median']:.0f} ns (counted in `benchmarks/peak.py`; output filter,"
-        " statistics and energies do not count).\n"
+        f"At the FMA peak a step takes {found[0]['peer_median']:.0f} ns. Ours uses"
+        f" {', '.join(parts)}.\n"
         if found
         else ""
     )
@@ -217,8 +213,10 @@ def _cores(rows):
 
 def _agreement(peers):
     """Yield a paragraph of what the peers solve and a table of the checks."""
-    notes = {row["peer"]: (row["version"], row["note"]) for row in peers}
-    yield "".join(f"- {peer} {version}: {note}.\n" for peer, (version, note) in notes.items())
+    alike = {}
+    for row in peers:
+        alike.setdefault(row["note"], {})[f"{row['peer']} {row['version']}"] = None
+    yield "".join(f"- {'; '.join(codes)}: {note}.\n" for note, codes in alike.items())
     lines = [
         (
             row["case"],
