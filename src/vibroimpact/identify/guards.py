@@ -32,17 +32,17 @@ FROM_SPECTRA = (*FROM_POLES, "ods", "broadband")
 
 def guarded(
     estimates: Iterable[Estimate],
-    record: xr.Dataset,
+    record: xr.Dataset | None,
     averages: float,
     search_Hz: Sequence[float],
 ) -> list[Estimate]:
     """Return the estimates of one case with the flags that any method can have.
 
-    record: with the residuals of the energy balance, where it has them.
+    record: with the residuals of the energy balance, where it has them; None for a measured case.
     averages: effective degrees of freedom of a bin.
     search_Hz: where the main peak was looked for.
     """
-    energy = energy_flag(record)
+    energy = "" if record is None else energy_flag(record)
     few = few_averages(averages)
     found = []
     for estimate in estimates:

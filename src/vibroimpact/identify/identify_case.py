@@ -13,7 +13,7 @@ from vibroimpact.linear.support_groups import acts_on_all, reached_supports
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.spectra.welch import complex_values, driven_axis
 
-from .broadband import BroadbandFit, identify_broadband
+from .broadband import NEEDS_FORCE, UNKNOWN, BroadbandFit, identify_broadband
 from .case_curves import case_curves, supports_curves
 from .case_estimates import (
     comparison_estimates,
@@ -22,7 +22,7 @@ from .case_estimates import (
     estimate_from_peak,
     estimate_from_shape,
 )
-from .estimate import Estimate
+from .estimate import Estimate, unresolved
 from .guards import guarded
 from .identify_supports import SupportsCase, estimates_of_supports
 from .ods import DeflectionShape, ShapeMatch, deflection_shape, match_shape
@@ -43,10 +43,11 @@ SPECTRA_READ = (
     "effective_averages",
 )
 FEWEST_SHAPE_BINS = 3
+FEWEST_SHAPE_POINTS = 2
 
 
 def identify_case(
-    config: ConfigPart, model: ModalModel, record: xr.Dataset, spectra: xr.Dataset
+    config: ConfigPart, model: ModalModel, record: xr.Dataset | None, spectra: xr.Dataset
 ) -> tuple[list[Estimate], xr.Dataset]:
     """Return (estimates, dataset of the curves behind them) of one case.
 
@@ -55,8 +56,10 @@ def identify_case(
 
     config: with excitation, spectra and identification.
     record: statistics of the case (secant.MOMENTS, the residuals of the energy balance where it has
-        them, attributes load_rms_N and gap_m).
-    spectra: dataset of study.case_spectra.
+        them, attributes load_rms_N and gap_m). None for a measured case: the methods that need
+        its contacts are left out.
+    spectra: dataset of study.case_spectra. Where its attribute `force` is "unknown", broadband is
+        not resolved.
     """
     estimates, curves = _identify(config, model, record, spectra)
     averages, search_Hz = float(spectra["effective_averages"]), config.identification.peak_search_Hz
@@ -64,7 +67,7 @@ def identify_case(
 
 
 def _identify(
-    config: ConfigPart, model: ModalModel, record: xr.Dataset, spectra: xr.Dataset
+    config: ConfigPart, model: ModalModel, record: xr.Dataset | None, spectra: xr.Dataset
 ) -> tuple[list[Estimate], xr.Dataset]:
     """Return what identify_case returns, before its guards."""
     directions, modes = reached_supports(model, config.identification.groups)
@@ -83,22 +86,28 @@ def _identify(
     estimates += [
         estimate_from_operational_pole(pole, tube),
         estimate_from_shape(shape, tube, case.averages),
-        estimate_from_broadband(broad, tube),
+        (
+            estimate_from_broadband(broad, tube)
+            if case.force_known
+            else unresolved("broadband", NEEDS_FORCE)
+        ),
     ]
-    estimates += comparison_estimates(config, model, record, directions)
+    if record is not None:
+        estimates += comparison_estimates(config, model, record, directions)
     estimates = [estimate.at(directions[0]) for estimate in estimates]
     return estimates, case_curves(case, peaks, pole, shape, broad)
 
 
 def _identify_each(
-    config: ConfigPart, model: ModalModel, record: xr.Dataset, spectra: xr.Dataset
+    config: ConfigPart, model: ModalModel, record: xr.Dataset | None, spectra: xr.Dataset
 ) -> tuple[list[Estimate], xr.Dataset]:
     """Return what identify_case returns, for several unknown supports."""
     tube = _supports_tube(model, config.identification.groups, *_layout(config, spectra))
     case = SupportsCase(spectra, tube, config.identification)
     result = case.fit()
     estimates = estimates_of_supports(case, result)
-    estimates += comparison_estimates(config, model, record, tube.directions)
+    if record is not None:
+        estimates += comparison_estimates(config, model, record, tube.directions)
     return estimates, supports_curves(case, result)
 
 
@@ -161,6 +170,7 @@ class CaseSpectra:
     def __init__(self, spectra: xr.Dataset, tube: ReferenceTube) -> None:
         self.tube = tube
         self.averages = float(spectra["effective_averages"])
+        self.force_known = spectra.attrs.get("force") != UNKNOWN
         self.frequency = tube.frequency
         self.outputs = complex_values(spectra, "sensor_spectra")
         self.line = complex_values(spectra, "line_spectra")
@@ -205,9 +215,9 @@ class CaseSpectra:
     def shape(self, fit: PeakFit | None) -> tuple[DeflectionShape, ShapeMatch] | None:
         """Return the shape of the band above 1/25 of the fitted peak and its match.
 
-        None without a peak, or for a band of too few bins.
+        None without a peak, on too few points, or for a band of too few bins.
         """
-        if fit is None:
+        if fit is None or len(self.line) < FEWEST_SHAPE_POINTS:
             return None
         edges = np.clip(fit.edges_Hz, self.line_frequency[0], self.line_frequency[-1])
         if edges[1] - edges[0] < FEWEST_SHAPE_BINS * self.tube.bins.spacing_Hz:
@@ -219,6 +229,8 @@ class CaseSpectra:
 
     def broadband(self) -> BroadbandFit | None:
         """Return the BroadbandFit, or None."""
+        if not self.force_known:
+            return None
         values = self.outputs[self.tube.sensors.broadband][:, self.tube.broadband]
         segments = values.real**2 + values.imag**2
         return identify_broadband(

@@ -14,7 +14,8 @@ import xarray as xr
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.spectra.welch import complex_values
 
-from .case_estimates import LOWEST_CORRELATION, LOWEST_MAC, without_damping
+from .broadband import NEEDS_FORCE, UNKNOWN
+from .case_estimates import LOWEST_CORRELATION, LOWEST_MAC, ONE_SENSOR, without_damping
 from .estimate import Estimate, flagged, mark_weak, unresolved
 from .graded_supports import MethodResult, graded_supports
 from .guards import peak_not_crossed
@@ -52,6 +53,7 @@ class SupportsCase:
     def __init__(self, spectra: xr.Dataset, tube: SupportsTube, config: ConfigPart) -> None:
         self.tube, self.config = tube, config
         self.averages = float(spectra["effective_averages"])
+        self.force_known = spectra.attrs.get("force") != UNKNOWN
         self.outputs = complex_values(spectra, "sensor_spectra")
         self.line = complex_values(spectra, "line_spectra")
         self.line_frequency = spectra["line_frequency"].values
@@ -67,8 +69,9 @@ class SupportsCase:
         spectra = self.by_spectra(shapes)
         peaks: dict[str, PeakFit | None] = dict.fromkeys(LEVELS)
         pole = None
-        if spectra is not None:
-            values = spectra.values
+        start = spectra or shapes
+        if start is not None:
+            values = start.values
             other = self.tube.other_modes(values.k, values.c)
             for method, level in LEVELS.items():
                 peaks[method] = fit_peak(
@@ -81,18 +84,18 @@ class SupportsCase:
                     self.averages,
                     self.segments,
                 )
-            pole = self.operational_pole(spectra)
+            pole = self.operational_pole(start)
         shape = self.main_shape(peaks["peak_25th"])
         return SupportsResult(peaks, pole, shape, spectra, shapes)
 
     def by_spectra(self, shapes: ShapesFit | None) -> SpectraFit | None:
-        """Return the SpectraFit, or None where the force has no power in the band.
+        """Return the SpectraFit, or None where the force is not known or has no power in the band.
 
         The supports of the shapes are one more start: spectra alone have more false minima.
         """
         tube = self.tube
         values = self.outputs[:, :, tube.broadband]
-        if values.shape[-1] == 0:
+        if values.shape[-1] == 0 or not self.force_known:
             return None
         segments = (values.real**2 + values.imag**2).swapaxes(0, 1)
         comparison = SpectraComparison(tube.structure, tube.at_broadband, tube.kernel, segments)
@@ -103,9 +106,9 @@ class SupportsCase:
         return comparison.fit(self.search, starts, tube.lowest_stable_damping, self.averages)
 
     def by_shapes(self) -> ShapesFit | None:
-        """Return the ShapesFit, or None where nothing along the line moves."""
+        """Return the ShapesFit, or None where nothing along the line moves, or one point does."""
         tube, kernel = self.tube, self.tube.kernel
-        if not np.any(tube.model.line_shapes[tube.structure.modes]):
+        if len(self.line) < 2 or not np.any(tube.model.line_shapes[tube.structure.modes]):
             return None
         measured = block_shapes(self.line, self.line_frequency, kernel)
         fine = tube.structure.frequency[tube.at_line.part]
@@ -123,11 +126,14 @@ class SupportsCase:
         starts = self.search.coarse_starts(coarse.cost, len(tube.directions), (SHAPE_LOSS,))
         return comparison.fit(starts, tube.lowest_stable_damping)
 
-    def operational_pole(self, spectra: SpectraFit) -> OperationalPole | None:
-        """Return the OperationalPole of the main peak, or None."""
+    def operational_pole(self, start: SpectraFit | ShapesFit) -> OperationalPole | None:
+        """Return the OperationalPole of the main peak, or None.
+
+        start: whose structure gives the bias of the estimator.
+        """
         lscf, tube = self.config.lscf, self.tube
         search = PoleSearch(tube.frequency, tuple(lscf.band_Hz), tube.bins.window, lscf.max_order)
-        values = spectra.values
+        values = start.values
         return operational_pole(
             self.outputs,
             tube.sensors.references,
@@ -174,12 +180,15 @@ def _estimates_by_pole(
     method: str,
     fit: PeakFit | OperationalPole | None,
 ) -> list[Estimate]:
-    """Return the Estimates of the step that a pole adds to the broadband comparison."""
-    if result.spectra is None:
-        return _unresolved(case, method, "the force has no power in the band of the comparison")
+    """Return the Estimates of the step that a pole adds to the broadband comparison.
+
+    Where there is no such comparison, it is added to the supports of the shapes.
+    """
+    start = result.spectra or result.shapes
+    if start is None:
+        return _unresolved(case, method, f"a pole alone tells no support from others: {_why(case)}")
     if fit is None:
         return _unresolved(case, method, "no resonance could be fitted to the main peak")
-    start = result.spectra
     pole = (fit.frequency, fit.damping_ratio, fit.covariance)
     covariance = start.covariance if np.any(start.covariance) else _shape_of(start)
     step: PoleStep | None = step_to_pole(
@@ -193,7 +202,12 @@ def _estimates_by_pole(
     return graded_supports(found, case.tube.structure, case.search)
 
 
-def _shape_of(fit: SpectraFit) -> np.ndarray:
+def _why(case: SupportsCase) -> str:
+    """Return why there is no broadband comparison."""
+    return "the force has no power in the band" if case.force_known else NEEDS_FORCE
+
+
+def _shape_of(fit: SpectraFit | ShapesFit) -> np.ndarray:
     """Return a covariance without the scatter's size, of spectra that have none."""
     return inverse_information(fit.values.jacobian)
 
@@ -202,7 +216,8 @@ def _estimates_by_shapes(case: SupportsCase, result: SupportsResult) -> list[Est
     """Return the Estimates of the shapes: k alone."""
     fit = result.shapes
     if fit is None:
-        return _unresolved(case, "ods", "the force moves no point of the shape line")
+        still = "the force moves no point of the shape line"
+        return _unresolved(case, "ods", ONE_SENSOR if len(case.line) < 2 else still)
     # The error of the model is part of the covariance already.
     found = MethodResult(
         "ods", fit.values.k, np.full(len(fit.values.k), np.nan), fit.covariance, None
@@ -217,7 +232,7 @@ def _estimates_by_spectra(case: SupportsCase, result: SupportsResult) -> list[Es
     """Return the Estimates of the broadband comparison."""
     fit = result.spectra
     if fit is None:
-        return _unresolved(case, "broadband", "the force has no power in the band")
+        return _unresolved(case, "broadband", _why(case))
     found = MethodResult("broadband", fit.values.k, fit.values.c, fit.covariance, fit.model_change)
     estimates = [
         without_damping(estimate) if at_edge else estimate

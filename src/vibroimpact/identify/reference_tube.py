@@ -126,8 +126,8 @@ class ReferenceTube:
         response, own = self.at_sensors, slice(self.sensors.broadband, self.sensors.broadband + 1)
         return type(response)(
             response.frequency[index],
-            response.free[own, index],
-            response.residue[own, index],
+            response.free[:, own, index],
+            response.residue[:, own, index],
             response.compliance[index],
         )
 
@@ -265,7 +265,8 @@ class ReferenceTube:
         fine = self.kernel.oversampling
         every_bin = slice(0, self.bins.highest * fine + 1, fine)
         response = self.at_sensors.frf(support.k, c, every_bin) * self.excited
-        return response[:, None, :] * response[None, list(self.sensors.references), :].conj(), pole
+        seen = response[:, None, list(self.sensors.references), :].conj()
+        return (response[:, :, None, :] * seen).sum(axis=0), pole
 
     @cached_property
     def pole_error_at_zero(self) -> float:
