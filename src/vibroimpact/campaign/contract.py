@@ -56,8 +56,10 @@ SERIES = ("force", "response", "voltage")
 SEE = "see docs/bring_your_own.md"
 
 
-def contract_problems(campaign: xr.Dataset) -> Iterator[str]:
+def contract_problems(campaign: xr.Dataset, force_needed: bool = True) -> Iterator[str]:
     """Yield a sentence for every breach of the contract by a Dataset with decoded texts.
+
+    force_needed: whether there must be a force channel.
 
     The values of SERIES are not looked at: what is wrong in them concerns single signals.
     """
@@ -68,7 +70,7 @@ def contract_problems(campaign: xr.Dataset) -> Iterator[str]:
             yield problem
         elif name in campaign.variables:
             sound.add(name)
-    yield from _size_problems(campaign)
+    yield from _size_problems(campaign, force_needed)
     yield from stated_value_problems(campaign, sound)
 
 
@@ -87,9 +89,9 @@ def _form_problem(campaign: xr.Dataset, name: str, dims: tuple[str, ...]) -> str
     return None
 
 
-def _size_problems(campaign: xr.Dataset) -> Iterator[str]:
+def _size_problems(campaign: xr.Dataset, force_needed: bool) -> Iterator[str]:
     """Yield a sentence for every dimension that is empty, or has no room for its meaning."""
-    for dim in ("record", "channel", "force_channel", "time"):
+    for dim in ("record", "channel", *(["force_channel"] if force_needed else []), "time"):
         if campaign.sizes.get(dim, 1) < 1:
             yield f"the dimension {dim} is empty: write one {dim} at least"
     if campaign.sizes.get("xyz", 3) != 3:

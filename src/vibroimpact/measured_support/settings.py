@@ -1,0 +1,155 @@
+"""The settings of the identification, those of the model with the sensors of a campaign."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from vibroimpact.campaign.file import SAME_POINT_M, CampaignError
+from vibroimpact.campaign.signals import CampaignSignals
+from vibroimpact.config.excitation import BandLimited
+from vibroimpact.config.schema import Broadband, Identification, Lscf
+from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.linear.modes import driven_block, first_mode
+from vibroimpact.reduction.modal_model import ModalModel
+from vibroimpact.study.cases import Case
+
+from .forces import KnownForce
+from .sensors import direction_of
+
+HELD = 1.0e9  # N/m: a tube that its supports hold
+# References of LSCF where the model names none that was measured. More make it less stable at the
+# low orders that it is read at.
+REFERENCES = 2
+# Bands where the model states none, over the first frequency of the free and of the held tube.
+SEARCH, LSCF, BROADBAND = (0.6, 1.3), (0.6, 1.8), (0.5, 3.0)
+
+
+def measured_settings(
+    config: ConfigPart,
+    signals: CampaignSignals,
+    model: ModalModel,
+    force: KnownForce,
+    used: Sequence[int] | np.ndarray,
+) -> ConfigPart:
+    """Return the configuration with the records and sensors of a campaign.
+
+    model: with its sensors.
+    used: (sensor,) indices of their channels.
+
+    Raises CampaignError where the records are too short or too coarsely sampled for it.
+    """
+    names = [signals.channels[each] for each in used]
+    identification = _with_sensors(config, signals, model, names, used)
+    low, high = force.band_Hz
+    # The linear tube is taken to be driven where spectra are kept: see spectra.measured_spectra.
+    band = (max(low, lowest_read_Hz(identification)), high)
+    segment_s = round(config.spectra.segment_s * signals.rate) / signals.rate
+    config = config.model_copy(
+        update={
+            "spectra": config.spectra.model_copy(update={"segment_s": segment_s}),
+            "record": config.record.model_copy(update={"sampling_frequency_Hz": signals.rate}),
+            "excitation": BandLimited(
+                kind="band_limited",
+                point="force",
+                direction=direction_of(config, signals),
+                band_Hz=band,
+            ),
+            "identification": identification,
+        }
+    )
+    _require_records(config, signals)
+    return config
+
+
+def lowest_read_Hz(identification: ConfigPart) -> float:
+    """Return the lower end in Hz of what the identification reads."""
+    own = identification
+    return min(own.peak_search_Hz[0], own.lscf.band_Hz[0], own.broadband.band_Hz[0])
+
+
+def _with_sensors(config, signals, model, names, used) -> Identification:
+    """Return the section identification with the names of channels as its points."""
+    own = config.identification or _between_free_and_held(model)
+    response, broadband = (
+        _nearest(config, signals, names, used, point)
+        for point in (own.response_point, own.broadband.point)
+    )
+    by_size = [names[each] for each in _by_motion(model, own)]
+    references = [
+        _nearest(config, signals, names, used, point) for point in own.lscf.references
+    ]
+    found = [name for name in dict.fromkeys(references) if name] or by_size[:REFERENCES]
+    return own.model_copy(
+        update={
+            "response_point": response or by_size[0],
+            "lscf": own.lscf.model_copy(update={"references": tuple(found)}),
+            "broadband": own.broadband.model_copy(update={"point": broadband or by_size[0]}),
+        }
+    )
+
+
+def _nearest(config, signals, names, used, point) -> str | None:
+    """Return the channel at a named point of the model, None where there is none."""
+    if config.identification is None:
+        return None
+    away = np.linalg.norm(signals.points[used] - np.array(config.points[point]), axis=1)
+    return names[int(np.argmin(away))] if away.min() < SAME_POINT_M else None
+
+
+def _by_motion(model: ModalModel, identification: Identification) -> list[int]:
+    """Return the indices of the sensors, first those that the first mode moves most at any k."""
+    block = driven_block(model)
+    low, high = identification.stiffness_range_N_per_m
+    vectors = [first_mode(model, block, k)[1] for k in (low, np.sqrt(low * high), high)]
+    shapes = [np.abs(vector @ model.sensor_shapes[block]) for vector in vectors]
+    size = np.prod([shape / shape.max() for shape in shapes], axis=0)
+    return np.argsort(-size, kind="stable").tolist()
+
+
+def _between_free_and_held(model: ModalModel) -> Identification:
+    """Return bands between the first frequency of the free tube and of the held one."""
+    block = driven_block(model)
+    free, held = (first_mode(model, block, k)[0] / (2.0 * np.pi) for k in (1.0, HELD))
+
+    def band(shares: tuple[float, float]) -> tuple[float, float]:
+        return round(shares[0] * free, 2), round(shares[1] * held, 2)
+
+    return Identification(
+        response_point="sensor",
+        peak_search_Hz=band(SEARCH),
+        lscf=Lscf(band_Hz=band(LSCF), references=("sensor",)),
+        broadband=Broadband(point="sensor", band_Hz=band(BROADBAND)),
+    )
+
+
+def _require_records(config: ConfigPart, signals: CampaignSignals) -> None:
+    """Raise CampaignError where records do not hold what the identification reads."""
+    highest = 2.0 * config.identification.lscf.band_Hz[1]
+    if highest > 0.5 * signals.rate:
+        raise CampaignError(
+            f"sampling_frequency = {signals.rate:g} Hz is too low for identification.lscf.band_Hz"
+            f" up to {0.5 * highest:g} Hz, which needs {2.0 * highest:g} Hz: give the model a lower"
+            " upper end"
+        )
+    shortest = signals.valid_samples.min() / signals.rate
+    if shortest < config.spectra.segment_s:
+        record = signals.records[int(np.argmin(signals.valid_samples))]
+        raise CampaignError(
+            f"record {record} lasts {shortest:.3g} s, less than a segment: give the model"
+            f" spectra.segment_s below {0.25 * shortest:.2g} s"
+        )
+
+
+def with_grid(config: ConfigPart, cases: Sequence[Case]) -> ConfigPart:
+    """Return the configuration with the grid of some cases."""
+    return config.model_copy(
+        update={
+            "grid": config.grid.model_copy(
+                update={
+                    "load_rms_N": tuple(sorted({case.load_rms_N for case in cases})),
+                    "gap_m": tuple(sorted({case.gap_m for case in cases}, reverse=True)),
+                    "seeds": 1 + max(case.seed for case in cases),
+                }
+            )
+        }
+    )
