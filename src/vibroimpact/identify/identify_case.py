@@ -59,7 +59,7 @@ def identify_case(
         them, attributes load_rms_N and gap_m). None for a measured case: the methods that need
         its contacts are left out.
     spectra: dataset of study.case_spectra. Where its attribute `force` is "unknown", broadband is
-        not resolved.
+        not resolved. A variable force_psd (low_frequency,) is the relative PSD of the force.
     """
     estimates, curves = _identify(config, model, record, spectra)
     averages, search_Hz = float(spectra["effective_averages"]), config.identification.peak_search_Hz
@@ -120,7 +120,9 @@ def reference_tube(config: ConfigPart, model: ModalModel, spectra: xr.Dataset) -
 
 
 def _layout(config: ConfigPart, spectra: xr.Dataset) -> tuple:
-    """Return (Bins, Sensors, band of the force, band of the comparison, stiffness range)."""
+    """Return (Bins, Sensors, band of the force, band of the comparison, stiffness range, bytes of
+    the relative PSD of the force, empty for a white one).
+    """
     identification = config.identification
     axis = "." + driven_axis(config.excitation.direction)
     names = tuple(str(name) for name in spectra["driven_sensor"].values)
@@ -149,19 +151,25 @@ def _layout(config: ConfigPart, spectra: xr.Dataset) -> tuple:
         force_band,
         tuple(identification.broadband.band_Hz),
         tuple(identification.stiffness_range_N_per_m),
+        spectra["force_psd"].values.tobytes() if "force_psd" in spectra else b"",
     )
 
 
 @lru_cache(maxsize=2)
-def _supports_tube(model, groups, bins, sensors, force_band, broadband_band, stiffness_range):
+def _supports_tube(model, groups, bins, sensors, force_band, broadband_band, k_range, psd):
     reached = reached_supports(model, groups)
     bands = (force_band, broadband_band)
-    return SupportsTube(model, reached, bins, sensors, bands, stiffness_range)
+    return SupportsTube(model, reached, bins, sensors, bands, k_range, _numbers(psd))
 
 
 @lru_cache(maxsize=2)
-def _reference_tube(model, bins, sensors, force_band, broadband_band, stiffness_range):
-    return ReferenceTube(model, bins, sensors, force_band, broadband_band, stiffness_range)
+def _reference_tube(model, bins, sensors, force_band, broadband_band, k_range, psd):
+    return ReferenceTube(model, bins, sensors, force_band, broadband_band, k_range, _numbers(psd))
+
+
+def _numbers(values: bytes) -> np.ndarray | None:
+    """Return the numbers of bytes, None for none."""
+    return np.frombuffer(values) if values else None
 
 
 class CaseSpectra:

@@ -180,21 +180,19 @@ def _estimates_by_pole(
     method: str,
     fit: PeakFit | OperationalPole | None,
 ) -> list[Estimate]:
-    """Return the Estimates of the step that a pole adds to the broadband comparison.
-
-    Where there is no such comparison, it is added to the supports of the shapes.
-    """
-    start = result.spectra or result.shapes
-    if start is None:
-        return _unresolved(case, method, f"a pole alone tells no support from others: {_why(case)}")
+    """Return the Estimates of the step that a pole adds to the broadband comparison."""
     if fit is None:
         return _unresolved(case, method, "no resonance could be fitted to the main peak")
+    known = {"frequency": fit.frequency, "damping_ratio": fit.damping_ratio}
+    if result.spectra is None:
+        note = f"a pole alone tells no support from others; {_why(case)}"
+        return _unresolved(case, method, note, **known)
+    start = result.spectra
     pole = (fit.frequency, fit.damping_ratio, fit.covariance)
     covariance = start.covariance if np.any(start.covariance) else _shape_of(start)
     step: PoleStep | None = step_to_pole(
         case.tube.structure, start.values.k, start.values.c, covariance, pole
     )
-    known = {"frequency": fit.frequency, "damping_ratio": fit.damping_ratio}
     if step is None:
         return _unresolved(case, method, "no supports give the main mode this pole", **known)
     scatter = step.covariance if np.any(start.covariance) else np.zeros_like(step.covariance)
@@ -207,7 +205,7 @@ def _why(case: SupportsCase) -> str:
     return "the force has no power in the band" if case.force_known else NEEDS_FORCE
 
 
-def _shape_of(fit: SpectraFit | ShapesFit) -> np.ndarray:
+def _shape_of(fit: SpectraFit) -> np.ndarray:
     """Return a covariance without the scatter's size, of spectra that have none."""
     return inverse_information(fit.values.jacobian)
 

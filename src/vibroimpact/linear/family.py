@@ -78,7 +78,8 @@ def driven_modes(model: ModalModel) -> DrivenModes:
 class FamilyResponse:
     """Displacement per unit force of every member of the family on one frequency grid.
 
-    The forces are independent and have the same PSD.
+    The forces are independent and have the same PSD. A relative PSD that is given is part of the
+    responses, by its root.
 
     frequency: (frequency,) Hz.
     free: (force, output, frequency) m/N, the tube without support.
@@ -136,10 +137,17 @@ class LinearFamily:
     Responses at any outputs follow from them.
     """
 
-    def __init__(self, modes: DrivenModes, frequency: np.ndarray) -> None:
-        """Solve the eigenvalue problems; frequency (frequency,) in Hz."""
+    def __init__(
+        self, modes: DrivenModes, frequency: np.ndarray, force_psd: np.ndarray | None = None
+    ) -> None:
+        """Solve the eigenvalue problems.
+
+        frequency: (frequency,) Hz.
+        force_psd: (frequency,) relative PSD of the forces; None for white ones.
+        """
         self.modes = modes
         self.frequency = frequency
+        self._root = None if force_psd is None else np.sqrt(force_psd)
         self._receptance = modes.receptance(2j * np.pi * frequency)
         self._compliance, self._vectors = np.linalg.eig(modes.compliance(2j * np.pi * frequency))
         self._excited = [
@@ -162,4 +170,6 @@ class LinearFamily:
         observed = np.stack([(receptance * shape) @ self.modes.contact for shape in shapes.T])
         reached = (observed[:, :, None, :] @ vectors)[:, :, 0, :]
         residue = np.stack([reached * excited[part] for excited in self._excited])
+        if self._root is not None:
+            free, residue = free * self._root[part], residue * self._root[part][:, None]
         return FamilyResponse(self.frequency[part], free, residue, self._compliance[part])

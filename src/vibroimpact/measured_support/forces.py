@@ -6,7 +6,9 @@ model's excitation reaches is pushed alike and independently (white noise per un
 nothing is said of the spectrum: pole and shape depend little on it.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -33,11 +35,14 @@ class KnownForce:
     known: whether their places and spectrum are.
     band_Hz: where they have power.
     drive_shapes: (mode, force) of independent forces with one spectrum.
+    stated_psd: function of (frequency,) in Hz that gives their PSD (frequency,), where it is stated
+        and not measured.
     """
 
     known: bool
     band_Hz: tuple[float, float]
     drive_shapes: np.ndarray
+    stated_psd: Callable[[np.ndarray], np.ndarray] | None = None
 
 
 def known_force(
@@ -56,7 +61,9 @@ def known_force(
         band = excited_band(padded, signals.rate)
         return KnownForce(True, band, model.drive_shapes @ _independent(config, signals, band))
     if config.excitation.kind == "turbulence":
-        return KnownForce(True, tuple(config.excitation.band_Hz), own_drive)
+        diameter = outer_width(config.structure.section)
+        psd = partial(line_force_psd, config.excitation, diameter)
+        return KnownForce(True, tuple(config.excitation.band_Hz), own_drive, psd)
     band = (1.0 / config.spectra.segment_s, HIGHEST * signals.rate)
     return KnownForce(False, band, _pushed_alike(config, model, own_drive, band[1]))
 
@@ -88,28 +95,32 @@ def _pushed_alike(
 
 
 def relative_psd(
-    config: ConfigPart, signals: CampaignSignals, record: int, force: KnownForce
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return (frequency (frequency,) in Hz, PSD (frequency,) of the forces over its mean).
+    config: ConfigPart,
+    signals: CampaignSignals,
+    record: int,
+    force: KnownForce,
+    frequency: np.ndarray,
+) -> np.ndarray | None:
+    """Return (frequency,) the PSD of the forces of a record over its mean in their band.
 
-    It is 1 outside their band, where they are not known, and where they are white within chance.
+    It is 1 outside the band. None where the forces are not known, or white within chance.
+
+    frequency: (frequency,) Hz, the first lines of the spectra.
     """
     rate, spectra = signals.rate, config.spectra
-    length = int(round(spectra.segment_s * rate))
-    frequency = np.arange(length // 2 + 1) * (rate / length)
     relative = np.ones(frequency.size)
     inside = (frequency >= force.band_Hz[0]) & (frequency <= force.band_Hz[1])
     if signals.forces:
         values = segment_spectra(signals.force[record], rate, spectra).values
-        psd = np.mean(values.real**2 + values.imag**2, axis=1).sum(axis=0)
+        psd = np.mean(values.real**2 + values.imag**2, axis=1).sum(axis=0)[: frequency.size]
         averages = effective_averages(signals.force[record].shape[-1] / rate, rate, spectra)
         chance = 2.0 / (averages * len(signals.forces))
         if np.var(psd[inside]) < NOT_WHITE * chance * np.mean(psd[inside]) ** 2:
-            return frequency, relative
+            return None
         psd = np.convolve(psd, SMOOTHED, mode="same")
-    elif force.known:
-        psd = line_force_psd(config.excitation, outer_width(config.structure.section), frequency)
+    elif force.stated_psd is not None:
+        psd = force.stated_psd(frequency)
     else:
-        return frequency, relative
+        return None
     relative[inside] = psd[inside] / np.mean(psd[inside])
-    return frequency, relative
+    return relative

@@ -78,11 +78,12 @@ def _with_sensors(config, signals, model, names, used) -> Identification:
     references = [
         _nearest(config, signals, names, used, point) for point in own.lscf.references
     ]
-    found = [name for name in dict.fromkeys(references) if name] or by_size[:REFERENCES]
+    found = list(dict.fromkeys([*filter(None, references), *by_size[:REFERENCES]]))
+    most = max(REFERENCES, len(set(filter(None, references))))
     return own.model_copy(
         update={
             "response_point": response or by_size[0],
-            "lscf": own.lscf.model_copy(update={"references": tuple(found)}),
+            "lscf": own.lscf.model_copy(update={"references": tuple(found[:most])}),
             "broadband": own.broadband.model_copy(update={"point": broadband or by_size[0]}),
         }
     )

@@ -51,9 +51,9 @@ def measured_spectra(
     used: np.ndarray,
     placed: tuple[int, Case],
 ) -> xr.Dataset:
-    """Return the spectra of a record over the root of the relative PSD of its force.
+    """Return the spectra of a record, and the relative PSD of its force where it is not white.
 
-    They are 0 below the lowest frequency that is read: integrated noise grows without end there.
+    Those of the sensors are 0 below the lowest frequency that is read: integrated noise grows without end there.
 
     config: of measured_settings.
     placed: (record, Case).
@@ -76,10 +76,9 @@ def measured_spectra(
     omega = 2.0 * np.pi * spectra["frequency"]
     for name in ("mean", "min", "max"):
         spectra[f"psd_acceleration_{name}"] = spectra[f"psd_displacement_{name}"] * omega**4
-    frequency, psd = relative_psd(config, signals, record, force)
-    for name, axis in (("sensor_spectra", "low_frequency"), ("line_spectra", "line_frequency")):
-        factor = 1.0 / np.sqrt(np.interp(spectra[axis].values, frequency, psd))
-        factor[spectra[axis].values < lowest_read_Hz(config.identification)] = 0.0
-        for part in ("re", "im"):
-            spectra[f"{name}_{part}"] = spectra[f"{name}_{part}"] * factor
-    return spectra
+    kept = spectra["low_frequency"] >= lowest_read_Hz(config.identification)
+    for part in ("re", "im"):
+        spectra[f"sensor_spectra_{part}"] = spectra[f"sensor_spectra_{part}"] * kept
+    frequency = spectra["low_frequency"].values
+    psd = relative_psd(config, signals, record, force, frequency)
+    return spectra if psd is None else spectra.assign(force_psd=("low_frequency", psd))
