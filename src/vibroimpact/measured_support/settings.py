@@ -9,9 +9,12 @@ from vibroimpact.campaign.signals import CampaignSignals
 from vibroimpact.config.excitation import BandLimited
 from vibroimpact.config.schema import Broadband, Identification, Lscf
 from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.identify.peak import find_peak
 from vibroimpact.linear.modes import driven_block, first_mode
 from vibroimpact.reduction.modal_model import ModalModel
+from vibroimpact.spectra.welch import segment_spectra
 from vibroimpact.study.cases import Case
+from vibroimpact.units import TIME_DERIVATIVES
 
 from .forces import KnownForce
 from .sensors import direction_of
@@ -20,8 +23,10 @@ HELD = 1.0e9  # N/m: a tube that its supports hold
 # References of LSCF where the model names none that was measured. More make it less stable at the
 # low orders that it is read at.
 REFERENCES = 2
-# Bands where the model states none, over the first frequency of the free and of the held tube.
-SEARCH, LSCF, BROADBAND = (0.6, 1.3), (0.6, 1.8), (0.5, 3.0)
+# Bands where the model states none: from a part of the first frequency of the free tube to a
+# multiple of the highest main peak of all records.
+LOW, SEARCH, LSCF, BROADBAND = 0.6, 1.4, 1.9, 3.0
+BEYOND = 1.3  # of the first frequency of the held tube: no main peak is looked for above
 
 
 def measured_settings(
@@ -69,7 +74,7 @@ def lowest_read_Hz(identification: ConfigPart) -> float:
 
 def _with_sensors(config, signals, model, names, used) -> Identification:
     """Return the section identification with the names of channels as its points."""
-    own = config.identification or _between_free_and_held(model)
+    own = config.identification or _around_the_peaks(config, signals, model, used)
     response, broadband = (
         _nearest(config, signals, names, used, point)
         for point in (own.response_point, own.broadband.point)
@@ -107,13 +112,24 @@ def _by_motion(model: ModalModel, identification: Identification) -> list[int]:
     return np.argsort(-size, kind="stable").tolist()
 
 
-def _between_free_and_held(model: ModalModel) -> Identification:
-    """Return bands between the first frequency of the free tube and of the held one."""
+def _around_the_peaks(
+    config: ConfigPart, signals: CampaignSignals, model: ModalModel, used: np.ndarray
+) -> Identification:
+    """Return bands that hold the main peaks of all records."""
     block = driven_block(model)
     free, held = (first_mode(model, block, k)[0] / (2.0 * np.pi) for k in (1.0, HELD))
+    low, top = LOW * free, 0.0
+    orders = np.array([TIME_DERIVATIVES[signals.kinds[each]] for each in used])
+    for response in signals.response:
+        spectra = segment_spectra(response[used], signals.rate, config.spectra, BEYOND * held)
+        power = np.mean(np.abs(spectra.values) ** 2, axis=1)
+        # As velocities: neither the drift of integrated noise nor that of high modes is largest.
+        power = power * np.maximum(spectra.frequency, low) ** (2.0 * (1.0 - orders[:, None]))
+        psd = np.sum(power / power.max(axis=1, keepdims=True), axis=0)
+        top = max(top, find_peak(spectra.frequency, psd, (low, BEYOND * held))[0])
 
-    def band(shares: tuple[float, float]) -> tuple[float, float]:
-        return round(shares[0] * free, 2), round(shares[1] * held, 2)
+    def band(factor: float) -> tuple[float, float]:
+        return round(low, 2), round(factor * top, 2)
 
     return Identification(
         response_point="sensor",
