@@ -180,8 +180,8 @@ def _levels(
     """Return (level (record,), name of the column): loads, or the motion of the response point."""
     if np.isfinite(signals.load_rms).all() and (signals.load_rms > 0.0).all():
         return signals.load_rms, LOAD
-    at = signals.channels.index(config.identification.response_point)
-    row = int(np.flatnonzero(used == at)[0])
+    points = [name.rpartition(".")[0] for name in model.sensor_names]
+    row = points.index(config.identification.response_point)
     first = first_sample(signals, model)
     moved = [
         displacements(config, signals, record, used, first)[row]

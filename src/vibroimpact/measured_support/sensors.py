@@ -63,7 +63,7 @@ def measured_model(
     return (
         replace(
             model,
-            sensor_names=tuple(f"{signals.channels[each]}.{axis}" for each in used),
+            sensor_names=tuple(f"{point_of(signals.channels[each], axis)}.{axis}" for each in used),
             sensor_shapes=model.sensor_shapes[:, used],
             sensor_positions=model.sensor_positions[used],
             sensor_directions=model.sensor_directions[used],
@@ -74,6 +74,11 @@ def measured_model(
         force,
         used,
     )
+
+
+def point_of(channel: str, axis: str) -> str:
+    """Return the name of the point of a channel: its own, without the axis at its end."""
+    return channel.removesuffix(f".{axis}")
 
 
 def groups_of(config: ConfigPart) -> str | tuple[tuple[str, ...], ...]:

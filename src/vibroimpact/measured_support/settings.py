@@ -12,12 +12,12 @@ from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.identify.peak import find_peak
 from vibroimpact.linear.modes import driven_block, first_mode
 from vibroimpact.reduction.modal_model import ModalModel
-from vibroimpact.spectra.welch import segment_spectra
+from vibroimpact.spectra.welch import driven_axis, segment_spectra
 from vibroimpact.study.cases import Case
 from vibroimpact.units import TIME_DERIVATIVES
 
 from .forces import KnownForce
-from .sensors import direction_of
+from .sensors import direction_of, point_of
 
 HELD = 1.0e9  # N/m: a tube that its supports hold
 # References of LSCF where the model names none that was measured. More make it less stable at the
@@ -43,7 +43,8 @@ def measured_settings(
 
     Raises CampaignError where the records are too short or too coarsely sampled for it.
     """
-    names = [signals.channels[each] for each in used]
+    axis = driven_axis(direction_of(config, signals))
+    names = [point_of(signals.channels[each], axis) for each in used]
     identification = _with_sensors(config, signals, model, names, used)
     low, high = force.band_Hz
     # The linear tube is taken to be driven where spectra are kept: see spectra.measured_spectra.
