@@ -47,10 +47,14 @@ def asked_campaign(wildcards):
 
 def measured_campaign(wildcards):
     """The file of --config equivalent_of=FILE; it may hold no force."""
+    from vibroimpact.measured_support.usable import identification_problems
+
     file = requested("equivalent_of", "FILE.nc")(wildcards)
     if WITHOUT_MODEL:
-        sys.exit("equivalent_of: k and c need a model of the tube: give model=FILE.yaml")
-    described(file, force_needed=False)
+        sys.exit("model = 'identified' has no supports to identify: give model=FILE.yaml of the tube")
+    problems = identification_problems(MODEL, described(file, force_needed=False))
+    if problems:
+        sys.exit("\n".join(f"{file}: {problem}" for problem in problems))
     return file
 
 

@@ -7,7 +7,11 @@ MEASURED_FIGURES = ("figure_13_equivalent_support", "figure_05_overlay", "figure
 rule equivalent:
     """Equivalent k and c of a measured tube: --config equivalent_of=FILE.nc [model=FILE.yaml]."""
     input:
-        campaign=after_model_checks(MODEL, MODEL_FILES, measured_campaign),
+        campaign=(
+            measured_campaign
+            if WITHOUT_MODEL
+            else after_model_checks(MODEL, MODEL_FILES, measured_campaign)
+        ),
         template=f"{SOURCE}/vibroimpact/reports/study_page.html",
         captions=[caption_file(f"measured_{name}") for name in MEASURED_FIGURES],
     output:

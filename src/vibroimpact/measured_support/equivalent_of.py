@@ -6,7 +6,7 @@ simulated.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,11 +14,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from vibroimpact.campaign.base_motion import relative_to_base
 from vibroimpact.campaign.file import CampaignError, read_campaign
-from vibroimpact.campaign.force_kinds import BASE
 from vibroimpact.campaign.signals import CampaignSignals, campaign_signals
-from vibroimpact.config.name_checks import TUBES
 from vibroimpact.config.reading import load_config
 from vibroimpact.config.schema import Config
 from vibroimpact.config.stage_settings import ConfigPart
@@ -36,6 +33,7 @@ from .levels import SAME_LOAD, SAME_RESPONSE, cases_of_records, gaps_of_records
 from .sensors import measured_model
 from .settings import measured_settings, with_grid
 from .spectra import displacements, first_sample, measured_spectra
+from .usable import identification_problems, signal_problems
 
 Rows = list[dict[str, Any]]
 LOAD, RESPONSE = "load_rms_N", "response_rms_m"  # columns that a level can be
@@ -94,8 +92,9 @@ def equivalent_of(
     config = model if isinstance(model, Config) else load_config(model)
     if not isinstance(campaign, xr.Dataset):
         campaign = read_campaign(campaign, force_needed=False)
-    signals = _whole_records(campaign_signals(campaign).require_units())
-    _require_tube(config, signals)
+    _require(identification_problems(config, campaign))
+    signals = campaign_signals(campaign)
+    _require(signal_problems(signals))
     try:
         linear, force, used = measured_model(config, campaign, signals)
     except ValueError as error:  # off the tube, or no support is reached
@@ -143,35 +142,11 @@ def _identified(
     )
 
 
-def _whole_records(signals: CampaignSignals) -> CampaignSignals:
-    """Return the signals relative to the base. Raises CampaignError for samples that are missing."""
-    if BASE in signals.force_kinds:
-        raise CampaignError(
-            "the base moved the structure: k and c are read from records under forces, or without"
-            " a measured force; leave the acceleration of the base out where the motion is"
-            " relative to it"
-        )
-    missing = [
-        f"{signals.channels[channel]} in record {name}"
-        for record, name in enumerate(signals.records)
-        for channel in np.flatnonzero(~signals.finite(record))
-    ]
-    if missing:
-        raise CampaignError(
-            f"samples are missing of {', '.join(missing[:6])}: cut the records, or leave these"
-            " channels or records out"
-        )
-    return relative_to_base(signals)
-
-
-def _require_tube(config: Config, signals: CampaignSignals) -> None:
-    if config.structure.kind not in TUBES:
-        raise CampaignError(
-            f"structure.kind = '{config.structure.kind}': the equivalent support is read of tubes:"
-            f" give a model of kind {' or '.join(TUBES)}"
-        )
-    if not config.supports:
-        raise CampaignError("the model has no supports: state them, with the gap that they have")
+def _require(problems: Iterable[str]) -> None:
+    """Raise CampaignError with every problem, a line each."""
+    found = list(problems)
+    if found:
+        raise CampaignError("\n".join(found))
 
 
 def _levels(
