@@ -50,6 +50,7 @@ PACKAGES = (
     "effects",
     "verdict",
     "diagnosis",
+    "measured_support",
     "acceptance",
     "validation",
     "reports",

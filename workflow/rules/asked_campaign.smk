@@ -51,7 +51,7 @@ def measured_campaign(wildcards):
 
     file = requested("equivalent_of", "FILE.nc")(wildcards)
     if WITHOUT_MODEL:
-        sys.exit("model = 'identified' has no supports to identify: give model=FILE.yaml of the tube")
+        sys.exit("model = 'identified' has no supports to identify: give model=FILE of the tube")
     problems = identification_problems(MODEL, described(file, force_needed=False))
     if problems:
         sys.exit("\n".join(f"{file}: {problem}" for problem in problems))

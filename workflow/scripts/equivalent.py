@@ -25,9 +25,7 @@ write_measured(found, folder)
 sheets = measured_figures(found, study_beside(config, snakemake.params.study))
 for sheet in sheets:
     sheet.save(folder / "figures")
-content = measured_content(
-    found, snakemake.params.name, values, flag_sentences(found.equivalent)
-)
+content = measured_content(found, snakemake.params.name, values, flag_sentences(found.equivalent))
 captions = {
     name: replace(read_caption(path), name=name)
     for path in snakemake.input.captions

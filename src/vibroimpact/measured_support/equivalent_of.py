@@ -94,7 +94,7 @@ def equivalent_of(
         campaign = read_campaign(campaign, force_needed=False)
     _require(identification_problems(config, campaign))
     signals = campaign_signals(campaign)
-    _require(signal_problems(signals))
+    _require(signal_problems(signals, config.spectra.segment_s))
     try:
         linear, force, used = measured_model(config, campaign, signals)
     except ValueError as error:  # off the tube, or no support is reached

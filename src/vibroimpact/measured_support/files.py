@@ -29,9 +29,7 @@ def write_measured(found: MeasuredSupports, folder: str | Path) -> None:
 
 def _with_records(found: MeasuredSupports) -> Rows:
     """Return the rows of consistency.csv with the names of their records."""
-    names = {
-        (case.gap_m, case.load_rms_N, case.seed): name for case, name in found.records.items()
-    }
+    names = {(case.gap_m, case.load_rms_N, case.seed): name for case, name in found.records.items()}
     return [
         {**row, "record": names[row["gap_m"], row["load_rms_N"], row["seed"]]} for row in found.rows
     ]

@@ -16,7 +16,7 @@ from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.spectra.welch import driven_axis
 
-from .forces import known_force
+from .forces import KnownForce, known_force
 
 LEAST_MOTION = 0.02  # of the sensor that the force moves most
 
@@ -39,7 +39,7 @@ def with_own_drive(
 
 def measured_model(
     config: ConfigPart, campaign: xr.Dataset, signals: CampaignSignals
-) -> tuple[ModalModel, "KnownForce", np.ndarray]:
+) -> tuple[ModalModel, KnownForce, np.ndarray]:
     """Return (ModalModel, KnownForce, indices (sensor,) of the channels that are its sensors).
 
     The sensors are those channels that measure a motion which the force causes, from one end of

@@ -41,7 +41,7 @@ def measured_settings(
     model: with its sensors.
     used: (sensor,) indices of their channels.
 
-    Raises CampaignError where the records are too short or too coarsely sampled for it.
+    Raises CampaignError where the records are too coarsely sampled for it.
     """
     axis = driven_axis(direction_of(config, signals))
     names = [point_of(signals.channels[each], axis) for each in used]
@@ -63,7 +63,7 @@ def measured_settings(
             "identification": identification,
         }
     )
-    _require_records(config, signals)
+    _require_rate(config, signals)
     return config
 
 
@@ -81,9 +81,7 @@ def _with_sensors(config, signals, model, names, used) -> Identification:
         for point in (own.response_point, own.broadband.point)
     )
     by_size = [names[each] for each in _by_motion(model, own)]
-    references = [
-        _nearest(config, signals, names, used, point) for point in own.lscf.references
-    ]
+    references = [_nearest(config, signals, names, used, point) for point in own.lscf.references]
     found = list(dict.fromkeys([*filter(None, references), *by_size[:REFERENCES]]))
     most = max(REFERENCES, len(set(filter(None, references))))
     return own.model_copy(
@@ -140,21 +138,14 @@ def _around_the_peaks(
     )
 
 
-def _require_records(config: ConfigPart, signals: CampaignSignals) -> None:
-    """Raise CampaignError where records do not hold what the identification reads."""
+def _require_rate(config: ConfigPart, signals: CampaignSignals) -> None:
+    """Raise CampaignError where records do not reach up to what the identification reads."""
     highest = 2.0 * config.identification.lscf.band_Hz[1]
     if highest > 0.5 * signals.rate:
         raise CampaignError(
             f"sampling_frequency = {signals.rate:g} Hz is too low for identification.lscf.band_Hz"
             f" up to {0.5 * highest:g} Hz, which needs {2.0 * highest:g} Hz: give the model a lower"
             " upper end"
-        )
-    shortest = signals.valid_samples.min() / signals.rate
-    if shortest < config.spectra.segment_s:
-        record = signals.records[int(np.argmin(signals.valid_samples))]
-        raise CampaignError(
-            f"record {record} lasts {shortest:.3g} s, less than a segment: give the model"
-            f" spectra.segment_s below {0.25 * shortest:.2g} s"
         )
 
 

@@ -53,7 +53,8 @@ def measured_spectra(
 ) -> xr.Dataset:
     """Return the spectra of a record, and the relative PSD of its force where it is not white.
 
-    Those of the sensors are 0 below the lowest frequency that is read: integrated noise grows without end there.
+    Those of the sensors are 0 below the lowest frequency that is read, where integrated noise grows
+    without end.
 
     config: of measured_settings.
     placed: (record, Case).

@@ -40,8 +40,8 @@ def identification_problems(config: Config, campaign: xr.Dataset) -> list[str]:
     return [*problems, *comparison_problems(own, campaign)]
 
 
-def signal_problems(signals: CampaignSignals) -> Iterator[str]:
-    """Yield sentences on signals that can not be used, in SI or not."""
+def signal_problems(signals: CampaignSignals, segment_s: float) -> Iterator[str]:
+    """Yield sentences on signals that can not be used, and on records shorter than a segment."""
     yield from signals.unit_faults.values()
     yield from signals.force_unit_faults.values()
     missing = [
@@ -59,4 +59,18 @@ def signal_problems(signals: CampaignSignals) -> Iterator[str]:
         yield (
             f"samples are missing of {', '.join(missing[:MOST_NAMED])}{others}: cut the records, or"
             " leave these channels or records out"
+        )
+    still = [
+        name
+        for row, name in enumerate(signals.channels)
+        if not any(np.any(response[row]) for response in signals.response)
+    ]
+    if still:
+        yield f"{', '.join(still)} measured nothing but zeros: leave them out"
+    shortest = float(signals.valid_samples.min() / signals.rate)
+    if shortest < segment_s:
+        record = signals.records[int(np.argmin(signals.valid_samples))]
+        yield (
+            f"record {record} lasts {shortest:.3g} s, less than a segment of {segment_s:g} s: give"
+            f" the model spectra.segment_s below {0.25 * shortest:.2g} s"
         )

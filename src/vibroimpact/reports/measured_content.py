@@ -54,9 +54,9 @@ class MeasuredContent(StudyContent):
         gaps = ", ".join(digits(1e3 * gap) for gap in sorted({row.gap_m for row in self.answers}))
         return (
             f"{self.records} measured record{'s' * (self.records != 1)} at {len(own)}"
-            f" level{'s' * (len(own) != 1)} ({digits(own[0])} to {digits(own[-1])} {self.unit} RMS),"
-            f" gap {gaps} mm, compared with the linear tube of the model {self.config.study}. No"
-            " contact was simulated."
+            f" level{'s' * (len(own) != 1)} ({digits(own[0])} to {digits(own[-1])} {self.unit}"
+            f" RMS), gap {gaps} mm, compared with the linear tube of the model {self.config.study}."
+            " No contact was simulated."
         )
 
     def headline(self) -> list[str]:

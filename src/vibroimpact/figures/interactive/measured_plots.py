@@ -37,7 +37,9 @@ def measured_plots(content: MeasuredContent, found: MeasuredSupports) -> PagePlo
         Control("place", "Supports, direction", [", ".join(pair) for pair in pairs]),
         Control("load", "Level", [f"{level:.3g} {content.unit} RMS" for level in shown], shown),
     ]
-    drawn = {name: [each for each in plots if each.has_traces()] for name, plots in sections.items()}
+    drawn = {
+        name: [each for each in plots if each.has_traces()] for name, plots in sections.items()
+    }
     return PagePlots(drawn, controls, plotly_library())
 
 

@@ -110,9 +110,7 @@ def _poles(
     if here.size and np.isfinite(taken_Hz):
         nearest = np.zeros(order.size, bool)
         nearest[here[np.argmin(np.abs(place[here] - taken_Hz))]] = True
-        traces.append(
-            _markers("taken", place, order, ratio, nearest, RED, "circle-open", 14)
-        )
+        traces.append(_markers("taken", place, order, ratio, nearest, RED, "circle-open", 14))
     return traces
 
 

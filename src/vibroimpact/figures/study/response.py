@@ -48,9 +48,9 @@ def figure_06_levels(config, model, responses, level="load_rms_N"):
     caption = (
         f"PSD of displacement divided by the square of the {word}, over frequency and {word},"
         f" {_gap_words(config, responses)}, mean over segments and seeds. Where the tube is linear"
-        f" a column has one colour; peaks that move to the right with the {word} show the stiffening"
-        " by contact. Triangles: modes of the driven plane of the free tube (bottom) and in full"
-        " bilateral contact (top)."
+        f" a column has one colour; peaks that move to the right with the {word} show the"
+        " stiffening by contact. Triangles: modes of the driven plane of the free tube (bottom) and"
+        " in full bilateral contact (top)."
     )
     sheet = Sheet(
         "figure_06_levels",
