@@ -163,7 +163,7 @@ def test_a_load_is_not_asked_of_records_without_a_force(results_without_force):
         equivalent(results_without_force, load_rms_N=1.0, gap_m=2.8886e-4)
 
 
-def test_a_file_without_a_force_is_a_campaign_where_none_is_needed(tmp_path, campaign):
+def test_a_file_without_a_force_is_read_where_none_is_needed(tmp_path, campaign):
     write_record(without_force(campaign), tmp_path / "plant.nc", names_kept=True)
     with pytest.raises(CampaignError, match="has no variable 'force'"):
         read_campaign(tmp_path / "plant.nc")
