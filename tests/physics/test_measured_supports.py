@@ -23,6 +23,7 @@ from vibroimpact.study.method_agreement import consistency_rows, summary_rows
 from vibroimpact.study.simulation import simulate_cases
 
 ROOT = Path(__file__).parents[2]
+OTHER_CODE = ROOT.parent / "shared" / "data" / "campaigns" / "dev_null.nc"
 SENSORS = ("apex.y", "bend_45.y", "right_leg.y")
 GAP = 2.8886e-4
 K, C = 1.0e5, 60.0
@@ -204,3 +205,28 @@ def test_one_of_two_forces_alone_misleads(tube, two_forces):
 def test_forces_that_are_not_known_leave_pole_and_shape(tube, two_forces):
     found = equivalent_of(fill_missing(with_no_force(without_force(two_forces))), tube[0])
     assert_known(found, ("lscf", "ods"))
+
+
+# k of a study of config/dev_tube.yaml at these loads and gaps, medians of four seeds: LSCF pole,
+# shape, broadband.
+STUDIED = {
+    (3.0, 0.24765e-3): (4.144e4, 4.027e4, 4.112e4),
+    (10.0, 0.24765e-3): (2.776e5, 2.560e5, 2.870e5),
+    (10.0, 0.17145e-3): (4.702e5, 4.320e5, 4.636e5),
+}
+
+
+@pytest.mark.skipif(not OTHER_CODE.is_file(), reason=f"{OTHER_CODE} is not there")
+@pytest.mark.parametrize("load, gap", STUDIED)
+def test_a_campaign_by_another_code_returns_k(load, gap):
+    # One record, gains 1 % and damping 5 % off: 10 % is the range of four seeds at 10 N.
+    found = equivalent_of(OTHER_CODE, load_config(ROOT / "config" / "dev_tube.yaml"))
+    for method, expected in zip(METHODS, STUDIED[load, gap], strict=True):
+        (row,) = [
+            row
+            for row in found.rows
+            if row["method"] == method
+            and row["gap_m"] == pytest.approx(gap)
+            and row["load_rms_N"] == pytest.approx(load, rel=0.01)
+        ]
+        assert row["k_N_per_m"] == pytest.approx(expected, rel=0.1)

@@ -56,7 +56,10 @@ def run_script(folder, file, config, study):
         input=SimpleNamespace(campaign=str(file), captions=[str(path) for path in captions]),
         output=SimpleNamespace(page=str(folder / "equivalent.html")),
         params=SimpleNamespace(
-            model=config.model_dump(mode="json"), name=folder.name, study=str(study)
+            library="0a1b2c3d4e5f6789",
+            model=config.model_dump(mode="json"),
+            name=folder.name,
+            study=str(study),
         ),
         log=[str(folder / "logs" / "equivalent.log")],
     )

@@ -10,6 +10,7 @@ from vibroimpact.figures.study.measured import measured_figures, study_beside
 from vibroimpact.job_log import redirect_output
 from vibroimpact.measured_support.equivalent_of import equivalent_of
 from vibroimpact.measured_support.files import write_measured
+from vibroimpact.provenance import file_attributes
 from vibroimpact.records import write_text
 from vibroimpact.reports.captions import read_caption
 from vibroimpact.reports.measured_content import measured_content
@@ -21,7 +22,7 @@ redirect_output(snakemake.log[0])
 values, folder = snakemake.params.model, Path(snakemake.output.page).parent
 config = check_config(values, "the model")
 found = equivalent_of(str(snakemake.input.campaign), config)
-write_measured(found, folder)
+write_measured(found, folder, file_attributes(values, snakemake.params.library))
 sheets = measured_figures(found, study_beside(config, snakemake.params.study))
 for sheet in sheets:
     sheet.save(folder / "figures")

@@ -1,6 +1,8 @@
 """The files of a measured tube, named as those of a study, so that the same commands read them."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -10,8 +12,12 @@ from vibroimpact.reduction.model_file import write_model
 from .equivalent_of import LOAD, RESPONSE, MeasuredSupports, Rows
 
 
-def write_measured(found: MeasuredSupports, folder: str | Path) -> None:
+def write_measured(
+    found: MeasuredSupports, folder: str | Path, attributes: Mapping[str, Any] | None = None
+) -> None:
     """Write equivalent.csv, consistency.csv, consistency_summary.csv, .nc and model.nc.
+
+    attributes: of the netCDF files, see provenance.file_attributes.
 
     Where no record has a load, its columns are NaN and response_rms_m (m) stands behind them.
     """
@@ -23,8 +29,8 @@ def write_measured(found: MeasuredSupports, folder: str | Path) -> None:
     }
     for name, rows in tables.items():
         write_table(_levels(rows, found.levels), folder / f"{name}.csv")
-    write_record(found.to_dataset(), folder / "consistency.nc")
-    write_model(found.model, folder / "model.nc")
+    write_record(found.to_dataset().assign_attrs(attributes or {}), folder / "consistency.nc")
+    write_model(found.model, folder / "model.nc", dict(attributes or {}))
 
 
 def _with_records(found: MeasuredSupports) -> Rows:
