@@ -18,10 +18,12 @@ from vibroimpact.campaign.file import (
     with_no_force,
     write_campaign,
 )
+from vibroimpact.campaign.importing.report import import_text
 from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.reading import load_config
 from vibroimpact.equivalent_support.answer import EquivalentError
 from vibroimpact.equivalent_support.study_answer import equivalent
+from vibroimpact.figures.discrepancy.quicklook import quicklook
 from vibroimpact.measured_support.levels import cases_of_records, gaps_of_records
 from vibroimpact.measured_support.usable import identification_problems
 from vibroimpact.records import read_table, write_record, write_table
@@ -172,6 +174,54 @@ def test_a_file_without_a_force_is_read_where_none_is_needed(tmp_path, campaign)
         read_campaign(tmp_path / "plant.nc")
     found = read_campaign(tmp_path / "plant.nc", force_needed=False)
     assert found.sizes["force_channel"] == 0 and np.isnan(found["load_rms"].values).all()
+
+
+FOLDER = """
+source: a plant in service
+forces: []
+channels:
+  - {name: apex, variable: apex, unit: m/s^2, kind: acceleration, point_m: [0, 0, 1.0],
+     direction: +y}
+  - {name: bend, variable: bend, unit: m/s^2, kind: acceleration,
+     point_m: [-0.2121, 0, 0.9121], direction: +y}
+sampling_frequency_Hz: 512
+records:
+  - {name: calm, file: calm.csv, gap_m: 2.8886e-4}
+  - {name: rough, file: rough.csv, gap_m: 2.8886e-4}
+"""
+
+
+@pytest.fixture(scope="module")
+def plant(tmp_path_factory, campaign):
+    """A folder of two records of accelerations alone, at two levels."""
+    folder = tmp_path_factory.mktemp("plant")
+    (folder / "campaign.yaml").write_text(FOLDER)
+    for name, record, level in (("calm", 0, 1.0), ("rough", 1, 4.0)):
+        columns = level * campaign["response"].values[record, :2].T
+        np.savetxt(folder / f"{name}.csv", columns, delimiter=",", header="apex,bend", comments="")
+    return folder
+
+
+def test_a_folder_without_a_force_is_imported(plant, config, tmp_path):
+    imported, rows = vibroimpact.import_folder(plant)
+    assert {row["role"] for row in rows} == {"response"}
+    write_campaign(imported, tmp_path / "plant.nc")
+    found = vibroimpact.equivalent_of(tmp_path / "plant.nc", config)
+    assert sorted(found.records.values()) == ["calm", "rough"]
+    low, high = sorted({row["load_rms_N"] for row in found.rows})
+    assert high / low == pytest.approx(4.0, rel=0.2)
+    k = [row["k_median"] for row in found.summary if row["method"] == "lscf"]
+    assert k == pytest.approx([2.0e5, 2.0e5], rel=0.06)
+
+
+def test_its_report_says_that_no_force_was_measured(plant):
+    imported, rows = vibroimpact.import_folder(plant)
+    checks = vibroimpact.check_campaign(imported)
+    assert [row["check"] for row in checks] == ["content"]
+    text = import_text(plant, imported, rows, checks)
+    assert "no force, gap 0.2889 mm" in text and "No force was measured" in text
+    (sheet,) = quicklook(imported)
+    assert {curve for _, curve, _ in sheet.tables} == {"calm", "rough"}
 
 
 def test_a_channel_across_the_force_is_left_out(campaign, config):

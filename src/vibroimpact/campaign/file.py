@@ -136,11 +136,21 @@ def campaign_dataset(
     force (record, force_channel, time): in the units of the drives.
     response (record, channel, time): in the units of the channels.
     channels, drives: lists of Channel; a drive is a force where its kind is not base_acceleration.
+        Without a drive no force was measured, and `force` is not read.
     levels: list of Level, one per record.
     sampling_frequency: Hz.
     optional: {name: values} of optional variables.
     attributes: source, antialias, start_up, period_samples, transient_periods.
     """
+    if not drives:
+        nowhere = Channel("force", (np.nan,) * 3, (0.0, 0.0, 1.0), "N", "generic")
+        still = np.zeros((len(levels), 1, np.shape(response)[-1]))
+        rate = sampling_frequency
+        whole = campaign_dataset(
+            still, response, channels, [nowhere], levels, rate, optional, **attributes
+        )
+        names = [name for name in whole.variables if str(name).startswith("force")]
+        return whole.drop_vars([*names, "load_rms"])
     kinds = [BASE if drive.kind == BASE else FORCE for drive in drives]
     factor = [
         _factor(f"force channel {drive.name}", drive.units, BASE if kind == BASE else "excitation")
@@ -209,7 +219,7 @@ def campaign_dataset(
 
 def write_campaign(campaign: xr.Dataset, path: str | Path) -> None:
     """Write a campaign Dataset. Raises CampaignError when it breaks the contract."""
-    _require(campaign, path)
+    _require(with_no_force(campaign), path, force_needed="force" in campaign)
     campaign = campaign.copy()
     for name in set(ABOUT) & {str(name) for name in campaign.variables}:
         units, long_name = ABOUT[name]

@@ -20,6 +20,7 @@ from vibroimpact.campaign.file import (
     decode_texts,
     fill_missing,
     opened_campaign,
+    with_no_force,
 )
 from vibroimpact.campaign.signals import (
     campaign_signals,
@@ -89,7 +90,7 @@ def check_file(path: str | Path) -> tuple[xr.Dataset | None, list[dict]]:
     if any(row["check"] == "contract" and row["level"] == "refuse" for row in rows):
         return None, rows
     try:
-        return fill_missing(campaign), rows
+        return fill_missing(with_no_force(campaign)), rows
     except CampaignError:  # a row refuses the unit of the force
         return None, rows
 
@@ -101,7 +102,10 @@ def check_campaign(campaign: xr.Dataset) -> list[dict]:
     for in what was recorded; all that follows looks at the motion relative to the base.
     """
     campaign = decode_texts(campaign)
-    problems = [*contract_problems(campaign)]
+    given = with_no_force(campaign)
+    problems = [*contract_problems(given, force_needed=given is campaign)]
+    if not problems and given is not campaign:
+        return _without_force(given)
     if problems:
         return [check_row("contract", "refuse", f"{problem}.") for problem in problems]
     try:
@@ -137,6 +141,22 @@ def check_campaign(campaign: xr.Dataset) -> list[dict]:
     return sorted(rows, key=lambda row: CHECKS.index(BESIDE.get(row["check"], row["check"])))
 
 
+def _without_force(campaign: xr.Dataset) -> list[dict]:
+    """Return the rows of what can be checked of a campaign whose force was not measured."""
+    measured = campaign_signals(fill_missing(campaign))
+    return [
+        *unit_rows(measured),
+        *size_rows(campaign, measured),
+        *time_rows(campaign, measured),
+        *_signal_faults(measured),
+        check_row("content", "refuse", NO_FORCE),
+    ]
+
+
+NO_FORCE = (
+    "No force was measured: there is no verdict on what a model lacks. k and c of the supports can"
+    " be read (docs/measured_supports.md)."
+)
 PASSED = {
     "contract": "The file holds every variable of the contract.",
     "units": "Every channel has a unit of its kind.",
@@ -187,7 +207,7 @@ def usable_signals(campaign: xr.Dataset, rows: list[dict]) -> tuple[np.ndarray, 
 def _signal_faults(measured):
     """Yield rows of faults of single signals, record by record."""
     for record, name in enumerate(measured.records):
-        period = measured.period_samples or common_period([measured.force[record][0]])
+        period = measured.period_samples or common_period(list(measured.force[record][:1]))
         forces = [
             (measured.forces[index], signal) for index, signal in enumerate(measured.force[record])
         ]
@@ -196,7 +216,8 @@ def _signal_faults(measured):
             for index, signal in enumerate(measured.response[record])
         ]
         for place, (channel, signal) in enumerate(forces + responses):
-            what = "The record is left out" if place == 0 else "It is left out of this record"
+            driving = place == 0 and forces
+            what = "The record is left out" if driving else "It is left out of this record"
             yield from _faults_of(signal, period, measured, name, channel, what)
 
 

@@ -7,7 +7,12 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from vibroimpact.campaign.file import Level, campaign_dataset, contract_problems
+from vibroimpact.campaign.file import (
+    Level,
+    campaign_dataset,
+    contract_problems,
+    with_no_force,
+)
 from vibroimpact.units import si_factor, si_unit
 
 from .cuts import Cut, cut_records
@@ -37,7 +42,8 @@ def import_folder(folder: str | Path) -> tuple[xr.Dataset, list[dict]]:
         raise ImportProblem("\n".join(dict.fromkeys(measured.problems)))
     cuts = cut_records(sensors, rate, measured)
     campaign = _campaign(sidecar, sensors, cuts, rate, voltage)
-    breaches = [f"{folder / NAME}: the campaign {line}" for line in contract_problems(campaign)]
+    problems = contract_problems(with_no_force(campaign), force_needed=bool(sidecar.forces))
+    breaches = [f"{folder / NAME}: the campaign {line}" for line in problems]
     if breaches:
         raise ImportProblem("\n".join(breaches))
     return campaign, _rows(sensors, cuts, rate)
@@ -100,7 +106,9 @@ def _campaign(sidecar, sensors, cuts, rate, voltage):
     channels, drives = (
         [sensor.channel for sensor in groups[role]] for role in ("response", "force")
     )
-    loads = np.sqrt(np.nanmean(np.square(stacked["force"][:, 0]), axis=-1))
+    loads = np.full(len(cuts), np.nan)
+    if drives:
+        loads = np.sqrt(np.nanmean(np.square(stacked["force"][:, 0]), axis=-1))
     return campaign_dataset(
         stacked["force"],
         stacked["response"],
