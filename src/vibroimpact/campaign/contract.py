@@ -54,6 +54,10 @@ TEXTS = (
 # Where values are read only after the file is known to be sound.
 SERIES = ("force", "response", "voltage")
 SEE = "see docs/bring_your_own.md"
+NO_FORCE = (
+    "holds no force: there is no verdict on what a model lacks; k and c of the supports can be"
+    " read, see docs/measured_supports.md"
+)
 
 
 def contract_problems(campaign: xr.Dataset, force_needed: bool = True) -> Iterator[str]:
@@ -64,7 +68,11 @@ def contract_problems(campaign: xr.Dataset, force_needed: bool = True) -> Iterat
     The values of SERIES are not looked at: what is wrong in them concerns single signals.
     """
     sound = set()
-    for name, dims in (NEEDED | FILLED | OPTIONAL).items():
+    forms = NEEDED | FILLED | OPTIONAL
+    if force_needed and not any(str(name).startswith("force") for name in campaign.variables):
+        yield NO_FORCE
+        forms = {name: dims for name, dims in forms.items() if not name.startswith("force")}
+    for name, dims in forms.items():
         problem = _form_problem(campaign, name, dims)
         if problem:
             yield problem

@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.campaign.base_motion import base_motion_rows, relative_to_base
-from vibroimpact.campaign.contract import contract_problems
+from vibroimpact.campaign.contract import NO_FORCE, contract_problems
 from vibroimpact.campaign.file import (
     LARGEST,
     CampaignError,
@@ -149,14 +149,10 @@ def _without_force(campaign: xr.Dataset) -> list[dict]:
         *size_rows(campaign, measured),
         *time_rows(campaign, measured),
         *_signal_faults(measured),
-        check_row("content", "refuse", NO_FORCE),
+        check_row("content", "refuse", f"The campaign {NO_FORCE}."),
     ]
 
 
-NO_FORCE = (
-    "No force was measured: there is no verdict on what a model lacks. k and c of the supports can"
-    " be read (docs/measured_supports.md)."
-)
 PASSED = {
     "contract": "The file holds every variable of the contract.",
     "units": "Every channel has a unit of its kind.",

@@ -94,7 +94,7 @@ def checks_text(checks: list[dict]) -> str:
     counts = {level: sum(row["level"] == level for row in checks) for level in order}
     usability = "can be used, with care" if counts["warn"] else "can be used"
     if counts["refuse"]:
-        usability = "can not be used"
+        usability = "gives no verdict"
     lines = [
         f"Checks: the campaign {usability}; {counts['pass']} checks passed, {counts['warn']}"
         f" warnings, {counts['refuse']} refusals.",
