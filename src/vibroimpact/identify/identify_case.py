@@ -8,6 +8,8 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.excitation.line_force_spectrum import relative_psd
+from vibroimpact.geometry.sections import outer_width
 from vibroimpact.integration.energy_limit import ENERGY_RESIDUALS
 from vibroimpact.linear.support_groups import acts_on_all, reached_supports
 from vibroimpact.reduction.modal_model import ModalModel
@@ -54,7 +56,7 @@ def identify_case(
     A method that cannot resolve the support returns an unresolved estimate with a note. So do all
     where the energy balance of the record is open, see guards.
 
-    config: with excitation, spectra and identification.
+    config: with structure.section, excitation, spectra and identification.
     record: statistics of the case (secant.MOMENTS, the residuals of the energy balance where it has
         them, attributes load_rms_N and gap_m). None for a measured case: the methods that need
         its contacts are left out.
@@ -143,7 +145,7 @@ def _layout(config: ConfigPart, spectra: xr.Dataset) -> tuple:
     )
     excitation = config.excitation
     force_band = (0.0, float("inf"))
-    if excitation.kind == "band_limited":
+    if excitation.kind in ("band_limited", "turbulence"):
         force_band = tuple(excitation.band_Hz)
     return (
         bins,
@@ -151,8 +153,18 @@ def _layout(config: ConfigPart, spectra: xr.Dataset) -> tuple:
         force_band,
         tuple(identification.broadband.band_Hz),
         tuple(identification.stiffness_range_N_per_m),
-        spectra["force_psd"].values.tobytes() if "force_psd" in spectra else b"",
+        _relative_psd(config, spectra).tobytes(),
     )
+
+
+def _relative_psd(config: ConfigPart, spectra: xr.Dataset) -> np.ndarray:
+    """Return (frequency,) the relative PSD of the force: measured, or of turbulence. Else empty."""
+    if "force_psd" in spectra:
+        return spectra["force_psd"].values
+    if config.excitation.kind != "turbulence":
+        return np.zeros(0)
+    diameter = outer_width(config.structure.section)
+    return relative_psd(config.excitation, diameter, spectra["low_frequency"].values)
 
 
 @lru_cache(maxsize=2)

@@ -14,7 +14,7 @@ import numpy as np
 
 from vibroimpact.campaign.signals import CampaignSignals, excited_band
 from vibroimpact.config.stage_settings import ConfigPart
-from vibroimpact.excitation.line_force_spectrum import line_force_psd
+from vibroimpact.excitation.line_force_spectrum import relative_psd as turbulence_psd
 from vibroimpact.geometry.sections import outer_width
 from vibroimpact.linear.support_groups import reached_supports
 from vibroimpact.reduction.modal_model import ModalModel
@@ -35,8 +35,8 @@ class KnownForce:
     known: whether their places and spectrum are.
     band_Hz: where they have power.
     drive_shapes: (mode, force) of independent forces with one spectrum.
-    stated_psd: function of (frequency,) in Hz that gives their PSD (frequency,), where it is stated
-        and not measured.
+    stated_psd: function of (frequency,) in Hz that gives their relative PSD (frequency,), where it
+        is stated and not measured.
     """
 
     known: bool
@@ -62,7 +62,7 @@ def known_force(
         return KnownForce(True, band, model.drive_shapes @ _independent(config, signals, band))
     if config.excitation.kind == "turbulence":
         diameter = outer_width(config.structure.section)
-        psd = partial(line_force_psd, config.excitation, diameter)
+        psd = partial(turbulence_psd, config.excitation, diameter)
         return KnownForce(True, tuple(config.excitation.band_Hz), own_drive, psd)
     band = (1.0 / config.spectra.segment_s, HIGHEST * signals.rate)
     return KnownForce(False, band, _pushed_alike(config, model, own_drive, band[1]))
@@ -118,9 +118,7 @@ def relative_psd(
         if np.var(psd[inside]) < NOT_WHITE * chance * np.mean(psd[inside]) ** 2:
             return None
         psd = np.convolve(psd, SMOOTHED, mode="same")
-    elif force.stated_psd is not None:
-        psd = force.stated_psd(frequency)
     else:
-        return None
+        return None if force.stated_psd is None else force.stated_psd(frequency)
     relative[inside] = psd[inside] / np.mean(psd[inside])
     return relative

@@ -64,6 +64,8 @@ class CaseSpectra:
         ]
         frequency, line_frequency = (transform.frequency for transform in self._transforms)
         driven = driven_axes(config.excitation.direction)
+        if getattr(config.excitation, "both_directions", False):
+            driven = tuple("xyz")
         self._driven = [
             index for index, name in enumerate(sensors) if name.rsplit(".", 1)[-1] in driven
         ]
