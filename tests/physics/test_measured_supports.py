@@ -9,8 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.measured_campaigns import LinearCampaigns, campaign_of_records, without_force
-from vibroimpact.campaign.file import fill_missing, with_no_force
+from tests.measured_campaigns import LinearCampaigns, Y, campaign_of_records, without_force
+from vibroimpact.campaign.file import (
+    Channel,
+    Level,
+    campaign_dataset,
+    fill_missing,
+    with_no_force,
+)
 from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.reading import load_config
 from vibroimpact.identify.estimate import table_rows
@@ -230,3 +236,52 @@ def test_a_campaign_by_another_code_returns_k(load, gap):
             and row["load_rms_N"] == pytest.approx(load, rel=0.01)
         ]
         assert row["k_N_per_m"] == pytest.approx(expected, rel=0.1)
+
+
+TURBULENCE = {
+    "kind": "turbulence",
+    "direction": [0.0, 1.0, 0.0],
+    "correlation_length_m": 0.2,
+    "band_Hz": [5.0, 200.0],
+    "spectrum": {
+        "kind": "tube_bundle",
+        "velocity_m_per_s": 4.0,
+        "fluid_density_kg_per_m3": 750.0,
+    },
+}
+
+
+@pytest.fixture(scope="module")
+def in_flow():
+    """(config, model, records, summary) of the study of the tube under turbulence."""
+    config = smoke(excitation=TURBULENCE, **{"grid.load_rms_N": [10.0], "grid.gap_m": [1.0e-4]})
+    return config, *studied(config)
+
+
+def test_a_study_under_turbulence_agrees_with_the_secant(in_flow):
+    # No equivalent support is the secant one: under a single force k is 10 to 20 % above it too.
+    rows = by_place(in_flow[-1])
+    secant = rows[10.0, "all", "secant"]["k_median"]
+    for method in METHODS:
+        row = rows[10.0, "all", method]
+        assert row["verdict_k"] == "agree"
+        assert 1.0 < row["k_median"] / secant < 1.35
+
+
+def test_measured_motion_in_a_flow_returns_the_studys_k(in_flow):
+    config, model, records, summary = in_flow
+    rows = [model.sensor_names.index(name) for name in SENSORS]
+    channels = [
+        Channel(name, tuple(model.sensor_positions[row]), Y, "m s-2", "acceleration")
+        for name, row in zip(SENSORS, rows, strict=True)
+    ]
+    response = [record["acceleration"].values[rows] for _, record in records]
+    levels = [Level(case.id, case.gap_m, case.seed) for case, _ in records]
+    rate = config.record.sampling_frequency_Hz
+    campaign = campaign_dataset(None, response, channels, [], levels, rate)
+    found = equivalent_of(fill_missing(with_no_force(campaign)), config)
+    assert found.force.known and found.force.drive_shapes.shape[1] > 1
+    for row in found.summary:
+        if row["method"] in METHODS:
+            study = by_place(summary)[10.0, "all", row["method"]]
+            assert 0.95 * study["k_low"] < row["k_median"] < 1.05 * study["k_high"]
