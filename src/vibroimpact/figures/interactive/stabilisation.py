@@ -52,25 +52,30 @@ def stabilisation_plot(
             " level. The circle is the pole that was taken. Trust it where a column of stable poles"
             " stands at the peak."
         ),
-        layout(
-            axis("Frequency (Hz)", range=list(band_Hz)),
-            axis(label("model_order")),
-            height=420,
-            margin={"l": 60, "r": 70, "t": 32, "b": 50},
-            yaxis2={
-                "overlaying": "y",
-                "side": "right",
-                "type": "log",
-                "showgrid": False,
-                "dtick": 2,
-                "exponentformat": "power",
-                "title": {"text": label("psd_m2_per_Hz")},
-            },
-        ),
+        _layout(band_Hz),
         frames,
         ("gap", "load"),
         empty="No pole was found at the main peak.",
         wide=True,
+    )
+
+
+def _layout(band_Hz: tuple[float, float]) -> dict[str, Any]:
+    """Return the layout: model order on the left, the spectrum on the right."""
+    return layout(
+        axis("Frequency (Hz)", range=list(band_Hz)),
+        axis(label("model_order")),
+        height=420,
+        margin={"l": 60, "r": 70, "t": 32, "b": 50},
+        yaxis2={
+            "overlaying": "y",
+            "side": "right",
+            "type": "log",
+            "showgrid": False,
+            "dtick": 2,
+            "exponentformat": "power",
+            "title": {"text": label("psd_m2_per_Hz")},
+        },
     )
 
 

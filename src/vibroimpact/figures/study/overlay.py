@@ -192,22 +192,13 @@ def figure_05_measured(config, model, measured, supports, simulated=None, level=
         np.round(np.linspace(0, measured.load.size - 1, min(LEVELS, measured.load.size)))
     ).astype(int)
     keys = [f"level {index}" for index in chosen]
-    beside = "" if simulated is None else " Blue: simulation of the study at the nearest load."
-    caption = (
-        f"PSD of acceleration at {sensor.rpartition('.')[0]}, gap"
-        f" {gap_label(measured.gap_m, outer_width(config.structure.section))}: measured (green;"
-        " thick: mean over segments and records, dotted: smallest and largest segment). Black: the"
-        " linear tube on its equivalent support in the band of the broadband comparison, its level"
-        f" fitted.{beside} Vertical: modes of the"
-        " driven plane of the tube, free (black, dashed) and held at the supports (red, dashed)."
-    )
     mosaic = [keys[row : row + 2] for row in range(0, len(keys), 2)]
     if len(mosaic[-1]) < len(mosaic[0]):
         mosaic[-1].append(".")
     sheet = Sheet(
         "figure_05_overlay",
         "Measured spectra over the equivalent linear tube",
-        caption,
+        _measured_caption(config, sensor, measured.gap_m, simulated is not None),
         mosaic,
         size=(9.0, 0.6 + 3.0 * len(mosaic)),
         sharex=True,
@@ -228,6 +219,19 @@ def figure_05_measured(config, model, measured, supports, simulated=None, level=
         named = dict(zip(labels, handles, strict=True)) | named
     sheet.figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=3)
     return [sheet]
+
+
+def _measured_caption(config, sensor, gap_m, simulated):
+    """Return the caption of measured spectra; simulated: whether a study is drawn too."""
+    beside = " Blue: simulation of the study at the nearest load." if simulated else ""
+    return (
+        f"PSD of acceleration at {sensor.rpartition('.')[0]}, gap"
+        f" {gap_label(gap_m, outer_width(config.structure.section))}: measured (green;"
+        " thick: mean over segments and records, dotted: smallest and largest segment). Black: the"
+        " linear tube on its equivalent support in the band of the broadband comparison, its level"
+        f" fitted.{beside} Vertical: modes of the"
+        " driven plane of the tube, free (black, dashed) and held at the supports (red, dashed)."
+    )
 
 
 def _in_unit(level, value):
