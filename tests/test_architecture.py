@@ -52,6 +52,7 @@ PACKAGES = (
     "wear",
     "verdict",
     "diagnosis",
+    "measured_support",
     "acceptance",
     "validation",
     "reports",

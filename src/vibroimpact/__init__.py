@@ -40,6 +40,8 @@ PUBLIC = {
     "Estimate": "identify.estimate",
     "equivalent": "equivalent_support.study_answer",
     "estimate_equivalent": "equivalent_support.estimate",
+    "equivalent_of": "measured_support.equivalent_of",
+    "MeasuredSupports": "measured_support.equivalent_of",
     "EquivalentError": "equivalent_support.answer",
     "point_springs": "equivalent_support.springs",
     "springs_text": "equivalent_support.export_formats.registry",

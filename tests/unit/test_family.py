@@ -26,7 +26,7 @@ def test_responses_are_those_of_the_full_solution(study_model, modes, k, c):
     shapes = study_model.sensor_shapes[:, [1, 3]]
     response = LinearFamily(modes, frequency).response(shapes)
     expected = frf(study_model, k, c, frequency, shapes)
-    np.testing.assert_allclose(response.frf(k, c), expected, rtol=1.0e-7)
+    np.testing.assert_allclose(response.frf(k, c)[0], expected, rtol=1.0e-7)
     np.testing.assert_allclose(
         response.psd(k, c, slice(10, 20), slice(1, 2)),
         np.abs(expected[1:, 10:20]) ** 2,

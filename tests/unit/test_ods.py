@@ -98,7 +98,7 @@ def test_the_change_with_damping_is_that_of_a_new_match(study_model, tube):
 
 
 def test_narrow_band_shape_is_the_response_shape(study_model, tube):
-    motion = tube.at_line.frf(1.0e5, 62.0, slice(130, 131))[:, 0]
+    motion = tube.at_line.frf(1.0e5, 62.0, slice(130, 131))[0, :, 0]
     assert mac(linear_ods(tube.at_line, slice(130, 131), 1.0e5, 62.0), motion) == pytest.approx(1.0)
 
 

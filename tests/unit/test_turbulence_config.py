@@ -114,10 +114,12 @@ def test_a_stretch_keeps_the_direction_off_the_bend(study):
     check_config(study, "mine")
 
 
-def test_identification_under_turbulence_is_refused(study):
+def test_identification_under_turbulence_needs_its_band(study):
     whole = yaml.safe_load((ROOT / "config" / "study.yaml").read_text())
     study["identification"] = whole["identification"]
-    assert "many independent ones: leave identification out" in refusal(study)
+    check_config(study, "mine")
+    study["excitation"]["band_Hz"] = [20.0, 60.0]
+    assert "reaches beyond the excited band [20.0, 60.0] Hz" in refusal(study)
 
 
 def test_turbulence_on_a_chain_is_refused(study):

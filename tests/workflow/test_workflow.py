@@ -410,6 +410,35 @@ def test_a_campaign_without_a_model_is_planned_as_any(study, tmp_path):
         assert planned == {"diagnosis", "discrepancy_report", "discrepancy"}
 
 
+def test_measured_supports_are_one_job(study, tmp_path):
+    campaign = sound_campaign()
+    write_campaign(campaign, tmp_path / "bench.nc")
+    force = [name for name in campaign.variables if str(name).startswith("force")]
+    write_record(campaign.drop_vars([*force, "load_rms"]), tmp_path / "plant.nc", names_kept=True)
+    for file in ("bench.nc", "plant.nc"):  # a force is not needed
+        asked = ("--dry-run", "equivalent", "--config", f"equivalent_of={tmp_path}/{file}")
+        run = study.snakemake(*asked)
+        assert run.returncode == 0, run.stdout + run.stderr
+        assert set(jobs_of(run)) - {"total"} == {"equivalent"}
+
+
+def test_what_gives_no_supports_is_told_before_any_plan(study, tmp_path):
+    write_campaign(sound_campaign(), tmp_path / "bench.nc")
+    off = sound_campaign(points=((0.0, 0.0, 3.0),) * 3)
+    write_campaign(off, tmp_path / "off.nc")
+    for asked, told in (
+        (("equivalent_of=none.nc",), "equivalent_of = 'none.nc' is not there"),
+        ((f"equivalent_of={tmp_path}/off.nc",), "off the tube"),
+        (
+            (f"equivalent_of={tmp_path}/bench.nc", "model=identified"),
+            "model = 'identified' has no supports to identify",
+        ),
+    ):
+        run = study.snakemake("--dry-run", "equivalent", "--config", *asked)
+        said = run.stdout + run.stderr
+        assert run.returncode == 1 and told in said and "Traceback" not in said, said
+
+
 def test_wrong_structure_file_is_reported_before_any_plan(study, tmp_path):
     write_campaign(sound_campaign(), tmp_path / "bench.nc")
     (tmp_path / "own.yaml").write_text("structure: {kind: identified, band_Hz: [60, 5]}")

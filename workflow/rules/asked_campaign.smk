@@ -18,17 +18,18 @@ def require_free_folder(key, name):
 
 
 require_free_folder("campaign", LOOKED_AT)
+require_free_folder("equivalent_of", MEASURED)
 require_free_folder("import", IMPORTED)
 
 
 @cache
-def described(file):
+def described(file, force_needed=True):
     """A campaign file without its signals.
 
     Exits with a sentence for everything it states that can not be.
     """
     try:
-        return checked_description(file)
+        return checked_description(file, force_needed)
     except (CampaignError, RecordError) as error:
         sys.exit(str(error))
 
@@ -41,6 +42,19 @@ def asked_campaign(wildcards):
     """The file of --config campaign=FILE, which keeps the contract of campaign files."""
     file = requested("campaign", "FILE.nc")(wildcards)
     described(file)
+    return file
+
+
+def measured_campaign(wildcards):
+    """The file of --config equivalent_of=FILE; it may hold no force."""
+    from vibroimpact.measured_support.usable import identification_problems
+
+    file = requested("equivalent_of", "FILE.nc")(wildcards)
+    if WITHOUT_MODEL:
+        sys.exit("model = 'identified' has no supports to identify: give model=FILE of the tube")
+    problems = identification_problems(MODEL, described(file, force_needed=False))
+    if problems:
+        sys.exit("\n".join(f"{file}: {problem}" for problem in problems))
     return file
 
 

@@ -54,6 +54,7 @@ REQUEST = {
     for name in (
         "import",
         "campaign",
+        "equivalent_of",
         "model",
         "effort",
         "draw_seed",
@@ -94,6 +95,7 @@ def asked_effort():
 
 LOOKED_AT = Path(REQUEST.get("campaign", "campaign")).stem
 DISCREPANCY = f"results/{LOOKED_AT}"
+MEASURED = Path(REQUEST.get("equivalent_of", "campaign")).stem
 EFFORT = asked_effort()
 
 

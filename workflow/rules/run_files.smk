@@ -46,6 +46,8 @@ def write_files_of_run():
         job.rule.name.startswith("_discrepancy") for job in planned_jobs()
     ):
         configurations[Path(DISCREPANCY)] = MODEL
+    if not WITHOUT_MODEL:
+        configurations[Path(f"results/{MEASURED}")] = MODEL
     for folder in result_folders():
         values = configurations.get(folder)
         write_run_files(folder, values and values.model_dump(mode="json"), sys.argv)

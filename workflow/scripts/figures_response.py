@@ -12,7 +12,7 @@ from vibroimpact.study.case_files import read_case
 
 redirect_output(snakemake.log[0])
 config, model = StageSettings(snakemake.params.config), read_model(snakemake.input.model)
-campaign = read_campaign(snakemake.input.campaign)
+campaign = read_campaign(snakemake.input.campaign, force_needed=False)
 spectra = psd_table.spectra_shown(config, snakemake.input.spectra, read_case)
 responses = psd_table.gather(config, model, spectra)
 sheets = [

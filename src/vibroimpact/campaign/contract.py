@@ -54,21 +54,31 @@ TEXTS = (
 # Where values are read only after the file is known to be sound.
 SERIES = ("force", "response", "voltage")
 SEE = "see docs/bring_your_own.md"
+NO_FORCE = (
+    "holds no force: there is no verdict on what a model lacks; k and c of the supports can be"
+    " read, see docs/measured_supports.md"
+)
 
 
-def contract_problems(campaign: xr.Dataset) -> Iterator[str]:
+def contract_problems(campaign: xr.Dataset, force_needed: bool = True) -> Iterator[str]:
     """Yield a sentence for every breach of the contract by a Dataset with decoded texts.
+
+    force_needed: whether there must be a force channel.
 
     The values of SERIES are not looked at: what is wrong in them concerns single signals.
     """
     sound = set()
-    for name, dims in (NEEDED | FILLED | OPTIONAL).items():
+    forms = NEEDED | FILLED | OPTIONAL
+    if force_needed and not any(str(name).startswith("force") for name in campaign.variables):
+        yield NO_FORCE
+        forms = {name: dims for name, dims in forms.items() if not name.startswith("force")}
+    for name, dims in forms.items():
         problem = _form_problem(campaign, name, dims)
         if problem:
             yield problem
         elif name in campaign.variables:
             sound.add(name)
-    yield from _size_problems(campaign)
+    yield from _size_problems(campaign, force_needed)
     yield from stated_value_problems(campaign, sound)
 
 
@@ -87,9 +97,9 @@ def _form_problem(campaign: xr.Dataset, name: str, dims: tuple[str, ...]) -> str
     return None
 
 
-def _size_problems(campaign: xr.Dataset) -> Iterator[str]:
+def _size_problems(campaign: xr.Dataset, force_needed: bool) -> Iterator[str]:
     """Yield a sentence for every dimension that is empty, or has no room for its meaning."""
-    for dim in ("record", "channel", "force_channel", "time"):
+    for dim in ("record", "channel", *(["force_channel"] if force_needed else []), "time"):
         if campaign.sizes.get(dim, 1) < 1:
             yield f"the dimension {dim} is empty: write one {dim} at least"
     if campaign.sizes.get("xyz", 3) != 3:

@@ -50,7 +50,7 @@ from numpy.typing import ArrayLike
 from vibroimpact.records import read_given_dataset, write_record
 from vibroimpact.units import UnitError, si_factor
 
-from .contract import OPTIONAL, SERIES, contract_problems
+from .contract import NEEDED, OPTIONAL, SERIES, contract_problems
 from .force_kinds import BASE, FORCE, load_unit, unit_kinds
 from .stated_values import KINDS as KINDS
 from .stated_values import Kind as Kind
@@ -138,11 +138,21 @@ def campaign_dataset(
     force (record, force_channel, time): in the units of the drives.
     response (record, channel, time): in the units of the channels.
     channels, drives: lists of Channel; a drive is a force where its kind is not base_acceleration.
+        Without a drive no force was measured, and `force` is not read.
     levels: list of Level, one per record.
     sampling_frequency: Hz.
     optional: {name: values} of optional variables.
     attributes: source, antialias, start_up, period_samples, transient_periods, band_Hz.
     """
+    if not drives:
+        nowhere = Channel("force", (np.nan,) * 3, (0.0, 0.0, 1.0), "N", "generic")
+        still = np.zeros((len(levels), 1, np.shape(response)[-1]))
+        rate = sampling_frequency
+        whole = campaign_dataset(
+            still, response, channels, [nowhere], levels, rate, optional, **attributes
+        )
+        names = [name for name in whole.variables if str(name).startswith("force")]
+        return whole.drop_vars([*names, "load_rms"])
     band = band_of(attributes)
     kinds = [BASE if drive.kind == BASE else FORCE for drive in drives]
     factor = [
@@ -213,7 +223,7 @@ def campaign_dataset(
 
 def write_campaign(campaign: xr.Dataset, path: str | Path) -> None:
     """Write a campaign Dataset. Raises CampaignError when it breaks the contract."""
-    _require(campaign, path)
+    _require(with_no_force(campaign), path, force_needed="force" in campaign)
     campaign = campaign.copy()
     for name in set(ABOUT) & {str(name) for name in campaign.variables}:
         units, long_name = ABOUT[name]
@@ -226,15 +236,20 @@ def write_campaign(campaign: xr.Dataset, path: str | Path) -> None:
     write_record(campaign.assign_attrs(title="vibroimpact campaign"), path, names_kept=True)
 
 
-def read_campaign(path: str | Path) -> xr.Dataset:
+def read_campaign(path: str | Path, force_needed: bool = True) -> xr.Dataset:
     """Return the campaign Dataset of a file, texts decoded and missing variables filled in.
+
+    force_needed: whether a file without the variables of the force is refused. It is else a
+        campaign without force channels, whose loads are NaN unless stated.
 
     The attribute `assumed` has a line for each variable that was filled in; see fill_missing.
     Raises RecordError when there is no such file or it is not netCDF, CampaignError with every
     breach of the contract.
     """
     campaign = opened_campaign(path)
-    _require(campaign, path)
+    if not force_needed:
+        campaign = with_no_force(campaign)
+    _require(campaign, path, force_needed)
     return fill_missing(campaign)
 
 
@@ -246,14 +261,35 @@ def opened_campaign(path: str | Path) -> xr.Dataset:
     return decode_texts(read_given_dataset(path))
 
 
-def checked_description(path: str | Path) -> xr.Dataset:
+def checked_description(path: str | Path, force_needed: bool = True) -> xr.Dataset:
     """Return the Dataset of a campaign file that keeps the contract, with zeros for all signals.
 
-    It takes no longer for long records. Raises as read_campaign does.
+    It takes no longer for long records. Raises as read_campaign does, whose arguments it has.
     """
     campaign = decode_texts(read_given_dataset(path, described=SERIES))
-    _require(campaign, path)
+    if not force_needed:
+        campaign = with_no_force(campaign)
+    _require(campaign, path, force_needed)
     return campaign
+
+
+def with_no_force(campaign: xr.Dataset) -> xr.Dataset:
+    """Return a campaign without variables of a force as one with no force channels.
+
+    Its loads are NaN where they are not stated. Any other campaign is returned as it is.
+    """
+    if any(str(name).startswith("force") for name in campaign.variables):
+        return campaign
+    empty = {
+        name: (dims, np.zeros([campaign.sizes.get(dim, 0) for dim in dims]))
+        for name, dims in NEEDED.items()
+        if name.startswith("force")
+    }
+    names = ("force_channel_name", np.array([], dtype=object))
+    loads = {}
+    if "load_rms" not in campaign:
+        loads["load_rms"] = ("record", np.full(campaign.sizes.get("record", 0), np.nan))
+    return campaign.assign(empty).assign(loads).assign({names[0]: ("force_channel", names[1])})
 
 
 def decode_texts(campaign: xr.Dataset) -> xr.Dataset:
@@ -382,9 +418,9 @@ def _last_finite(campaign: xr.Dataset) -> np.ndarray:
     return np.where(some.any(axis=1), samples - np.argmax(some[:, ::-1], axis=1), 0)
 
 
-def _require(campaign: xr.Dataset, path: str | Path) -> None:
+def _require(campaign: xr.Dataset, path: str | Path, force_needed: bool = True) -> None:
     """Raise CampaignError unless the Dataset keeps the contract."""
-    problems = [*contract_problems(campaign)]
+    problems = [*contract_problems(campaign, force_needed)]
     if problems:
         raise CampaignError("\n".join(f"{path}: {problem}" for problem in problems))
 

@@ -104,7 +104,8 @@ class CampaignSignals:
     @cached_property
     def period_samples(self) -> int:
         """Return the samples of a period: as stated, or found in the forces; 0 for none."""
-        return self.stated_period or common_period([force[0] for force in self.force])
+        driven = [force[0] for force in self.force if len(force)]
+        return self.stated_period or common_period(driven)
 
     def require_units(self) -> CampaignSignals:
         """Return the signals themselves. Raises CampaignError where a unit can not be used."""
@@ -131,7 +132,8 @@ class CampaignSignals:
             (
                 int(record)
                 for record in order
-                if np.isfinite(self.force[record][0]).all()
+                if self.forces
+                and np.isfinite(self.force[record][0]).all()
                 and self.force[record][0].any()
                 and self.finite(record).any()
             ),

@@ -176,7 +176,7 @@ def _bands_below_nyquist(record: RecordKeys, identification: Identification) -> 
 
 
 def _broadband_is_excited(excitation: Excitation, identification: Identification) -> Problems:
-    if excitation.kind != "band_limited":
+    if excitation.kind not in ("band_limited", "turbulence"):
         return
     low, high = excitation.band_Hz
     asked = identification.broadband.band_Hz
@@ -192,7 +192,7 @@ def _broadband_is_excited(excitation: Excitation, identification: Identification
 
 
 def _main_peak_is_excited(excitation: Excitation, identification: Identification) -> Problems:
-    if excitation.kind != "band_limited":
+    if excitation.kind not in ("band_limited", "turbulence"):
         return
     low, high = excitation.band_Hz
     for key, asked in (

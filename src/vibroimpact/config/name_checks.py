@@ -140,16 +140,7 @@ def identification_needs(
                 " identification out"
             ),
         )
-    elif excitation.kind == "turbulence":
-        yield (
-            "identification",
-            "given",
-            (
-                "compares with the linear tube under one force, and turbulence acts by many"
-                " independent ones: leave identification out"
-            ),
-        )
-    elif excitation.kind not in ("band_limited", "measured"):
+    elif excitation.kind not in ("band_limited", "measured", "turbulence"):
         yield (
             "identification",
             "given",

@@ -21,7 +21,7 @@ from .answer import NOT_MOVED, Answer, EquivalentError, GroupAnswer, MethodAnswe
 from .homogeneity import effects_with_a_scale
 from .interpolation import SAME, Reading, ranges_of_agreement, read_at
 from .missing_case import no_study_sentence, outside_sentence, require_metres
-from .study_tables import SUMMARY, recommended_rows_of, summary_rows_of
+from .study_tables import RECOMMENDED, SUMMARY, recommended_rows_of, summary_rows_of
 from .support_directions import driven_word
 
 Rows = list[dict[str, Any]]
@@ -62,6 +62,11 @@ def equivalent(
     else:
         level_of, level = _load_over_gap, load_rms_N / gap_m
     levels = [level_of(row) for row in recommended]
+    if np.isnan(levels).all():
+        raise EquivalentError(
+            f"'{folder.name}' was measured without a force, its records have no load: read k and c"
+            f" by the RMS of the response in {folder / RECOMMENDED}"
+        )
     if not min(levels) * (1.0 - SAME) <= level <= max(levels) * (1.0 + SAME):
         raise EquivalentError(
             outside_sentence(folder.name, recommended, load_rms_N, gap_m, bool(effects))

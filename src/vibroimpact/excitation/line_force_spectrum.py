@@ -37,6 +37,15 @@ def line_force_psd(force: ConfigPart, diameter: float, frequency: np.ndarray) ->
     return out
 
 
+def relative_psd(force: ConfigPart, diameter: float, frequency: np.ndarray) -> np.ndarray:
+    """Return (frequency,) line_force_psd over its mean in the band, and 1 outside the band.
+
+    Arguments as there.
+    """
+    psd = line_force_psd(force, diameter, frequency)
+    return np.where(psd > 0.0, psd / np.mean(psd[psd > 0.0]), 1.0)
+
+
 def _inside_the_band(force: ConfigPart, diameter: float, frequency: np.ndarray) -> np.ndarray:
     spectrum = force.spectrum
     if spectrum.kind == "flat":

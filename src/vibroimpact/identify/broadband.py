@@ -18,6 +18,8 @@ from vibroimpact.spectra.window_leakage import SpectralKernel, correlated_sum
 from .segment_scatter import widened
 
 EXPONENT = 0.5
+UNKNOWN = "unknown"  # the attribute `force` of spectra whose force is not known
+NEEDS_FORCE = "the force is not known, and spectra over a band depend on it"
 STEPS = 40  # at most, of the search
 
 
@@ -166,10 +168,11 @@ def _linearise(
     The jacobian is by (ln k, c), with the amplitude projected out. residual @ residual is one minus
     the squared correlation.
     """
-    value, slope = (part[0] for part in response.frf_slope(k, c))
-    product = 2.0 * value.conj() * slope
+    value, slope = (part[:, 0] for part in response.frf_slope(k, c))
+    product = (2.0 * value.conj() * slope).sum(axis=0)
     omega = 2.0 * np.pi * response.frequency
-    curves = np.array([value.real**2 + value.imag**2, product.real, -product.imag * omega])
+    power = (value.real**2 + value.imag**2).sum(axis=0)
+    curves = np.array([power, product.real, -product.imag * omega])
     psd, by_k, by_c = kernel.smooth(curves)
     vector = psd**EXPONENT
     amplitude = vector @ target / (vector @ vector)

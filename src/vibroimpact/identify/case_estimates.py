@@ -37,6 +37,7 @@ DAMPING_RATIO_LIMIT = 0.5
 LOWEST_MAC = 0.9
 # Correlation below which the best spectrum of the family does not look like the measured one.
 LOWEST_CORRELATION = 0.8
+ONE_SENSOR = "one sensor tells no shape"
 C_AT_EDGE = "c is at the edge of the family: with less, a mode of the linear tube would be unstable"
 
 
@@ -97,7 +98,9 @@ def estimate_from_shape(
     averages: effective degrees of freedom of a bin.
     """
     if shape is None:
-        return unresolved("ods", "no peak sets a band inside that of the shape line's spectra")
+        few = tube.model.line_shapes.shape[1] < 2
+        note = "no peak sets a band inside that of the shape line's spectra"
+        return unresolved("ods", ONE_SENSOR if few else note)
     measured, match = shape
     influences = jackknife_influences(match.segment_changes[:, None])
     variance = segment_covariance(influences, averages)[0, 0]

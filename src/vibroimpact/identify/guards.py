@@ -34,18 +34,19 @@ FROM_SPECTRA = (*FROM_POLES, "ods", "broadband")
 
 def guarded(
     estimates: Iterable[Estimate],
-    record: xr.Dataset,
+    record: xr.Dataset | None,
     averages: float,
     search_Hz: Sequence[float],
     unusable: str = "",
 ) -> list[Estimate]:
     """Return the estimates of one case with the flags and cautions that any method can have.
 
-    record: with the residuals of the energy balance, where it has them.
+    record: with the residuals of the energy balance, where it has them; None for a measured case.
     averages: effective degrees of freedom of a bin.
     search_Hz: where the main peak was looked for.
     unusable: which channels the methods can not use; a reason for what is not resolved.
     """
+    record = xr.Dataset() if record is None else record
     energy = energy_flag(record)
     caution = joined(few_averages(averages), over_stress(record))
     found = []

@@ -8,12 +8,14 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.excitation.line_force_spectrum import relative_psd
+from vibroimpact.geometry.sections import outer_width
 from vibroimpact.integration.energy_limit import ENERGY_RESIDUALS
 from vibroimpact.linear.support_groups import acts_on_all, reached_supports
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.spectra.welch import complex_values, driven_axis
 
-from .broadband import BroadbandFit, identify_broadband
+from .broadband import NEEDS_FORCE, UNKNOWN, BroadbandFit, identify_broadband
 from .case_curves import case_curves, supports_curves
 from .case_estimates import (
     comparison_estimates,
@@ -22,7 +24,7 @@ from .case_estimates import (
     estimate_from_peak,
     estimate_from_shape,
 )
-from .estimate import Estimate
+from .estimate import Estimate, unresolved
 from .guards import GUARDED, guarded
 from .identify_supports import SupportsCase, estimates_of_supports
 from .ods import DeflectionShape, ShapeMatch, deflection_shape, match_shape
@@ -44,20 +46,23 @@ SPECTRA_READ = (
     "effective_averages",
 )
 FEWEST_SHAPE_BINS = 3
+FEWEST_SHAPE_POINTS = 2
 
 
 def identify_case(
-    config: ConfigPart, model: ModalModel, record: xr.Dataset, spectra: xr.Dataset
+    config: ConfigPart, model: ModalModel, record: xr.Dataset | None, spectra: xr.Dataset
 ) -> tuple[list[Estimate], xr.Dataset]:
     """Return (estimates, dataset of the curves behind them) of one case.
 
     A method that cannot resolve the support returns an unresolved estimate with a note. So do all
     where the energy balance of the record is open, see guards.
 
-    config: with excitation, spectra and identification.
+    config: with structure.section, excitation, spectra and identification.
     record: statistics of the case (secant.MOMENTS, the residuals of the energy balance where it has
-        them, attributes load_rms_N and gap_m).
-    spectra: dataset of study.case_spectra.
+        them, attributes load_rms_N and gap_m). None for a measured case: the methods that need
+        its contacts are left out.
+    spectra: dataset of study.case_spectra. Where its attribute `force` is "unknown", broadband is
+        not resolved. A variable force_psd (low_frequency,) is the relative PSD of the force.
     """
     estimates, curves = _identify(config, model, record, spectra)
     averages, search_Hz = float(spectra["effective_averages"]), config.identification.peak_search_Hz
@@ -66,7 +71,7 @@ def identify_case(
 
 
 def _identify(
-    config: ConfigPart, model: ModalModel, record: xr.Dataset, spectra: xr.Dataset
+    config: ConfigPart, model: ModalModel, record: xr.Dataset | None, spectra: xr.Dataset
 ) -> tuple[list[Estimate], xr.Dataset]:
     """Return what identify_case returns, before its guards."""
     directions, modes = reached_supports(model, config.identification.groups)
@@ -85,22 +90,28 @@ def _identify(
     estimates += [
         estimate_from_operational_pole(pole, tube),
         estimate_from_shape(shape, tube, case.averages),
-        estimate_from_broadband(broad, tube),
+        (
+            estimate_from_broadband(broad, tube)
+            if case.force_known
+            else unresolved("broadband", NEEDS_FORCE)
+        ),
     ]
-    estimates += comparison_estimates(config, model, record, directions)
+    if record is not None:
+        estimates += comparison_estimates(config, model, record, directions)
     estimates = [estimate.at(directions[0]) for estimate in estimates]
     return estimates, case_curves(case, peaks, pole, shape, broad)
 
 
 def _identify_each(
-    config: ConfigPart, model: ModalModel, record: xr.Dataset, spectra: xr.Dataset
+    config: ConfigPart, model: ModalModel, record: xr.Dataset | None, spectra: xr.Dataset
 ) -> tuple[list[Estimate], xr.Dataset]:
     """Return what identify_case returns, for several unknown supports."""
     tube = _supports_tube(model, config.identification.groups, *_layout(config, spectra))
     case = SupportsCase(spectra, tube, config.identification)
     result = case.fit()
     estimates = estimates_of_supports(case, result)
-    estimates += comparison_estimates(config, model, record, tube.directions)
+    if record is not None:
+        estimates += comparison_estimates(config, model, record, tube.directions)
     return estimates, supports_curves(case, result)
 
 
@@ -113,7 +124,9 @@ def reference_tube(config: ConfigPart, model: ModalModel, spectra: xr.Dataset) -
 
 
 def _layout(config: ConfigPart, spectra: xr.Dataset) -> tuple:
-    """Return (Bins, Sensors, band of the force, band of the comparison, stiffness range)."""
+    """Return (Bins, Sensors, band of the force, band of the comparison, stiffness range, bytes of
+    the relative PSD of the force, empty for a white one).
+    """
     identification = config.identification
     axis = "." + driven_axis(config.excitation.direction)
     names = tuple(str(name) for name in spectra["driven_sensor"].values)
@@ -134,7 +147,7 @@ def _layout(config: ConfigPart, spectra: xr.Dataset) -> tuple:
     )
     excitation = config.excitation
     force_band = (0.0, float("inf"))
-    if excitation.kind == "band_limited":
+    if excitation.kind in ("band_limited", "turbulence"):
         force_band = tuple(excitation.band_Hz)
     return (
         bins,
@@ -142,19 +155,35 @@ def _layout(config: ConfigPart, spectra: xr.Dataset) -> tuple:
         force_band,
         tuple(identification.broadband.band_Hz),
         tuple(identification.stiffness_range_N_per_m),
+        _relative_psd(config, spectra).tobytes(),
     )
 
 
+def _relative_psd(config: ConfigPart, spectra: xr.Dataset) -> np.ndarray:
+    """Return (frequency,) the relative PSD of the force: measured, or of turbulence. Else empty."""
+    if "force_psd" in spectra:
+        return spectra["force_psd"].values
+    if config.excitation.kind != "turbulence":
+        return np.zeros(0)
+    diameter = outer_width(config.structure.section)
+    return relative_psd(config.excitation, diameter, spectra["low_frequency"].values)
+
+
 @lru_cache(maxsize=2)
-def _supports_tube(model, groups, bins, sensors, force_band, broadband_band, stiffness_range):
+def _supports_tube(model, groups, bins, sensors, force_band, broadband_band, k_range, psd):
     reached = reached_supports(model, groups)
     bands = (force_band, broadband_band)
-    return SupportsTube(model, reached, bins, sensors, bands, stiffness_range)
+    return SupportsTube(model, reached, bins, sensors, bands, k_range, _numbers(psd))
 
 
 @lru_cache(maxsize=2)
-def _reference_tube(model, bins, sensors, force_band, broadband_band, stiffness_range):
-    return ReferenceTube(model, bins, sensors, force_band, broadband_band, stiffness_range)
+def _reference_tube(model, bins, sensors, force_band, broadband_band, k_range, psd):
+    return ReferenceTube(model, bins, sensors, force_band, broadband_band, k_range, _numbers(psd))
+
+
+def _numbers(values: bytes) -> np.ndarray | None:
+    """Return the numbers of bytes, None for none."""
+    return np.frombuffer(values) if values else None
 
 
 class CaseSpectra:
@@ -163,6 +192,7 @@ class CaseSpectra:
     def __init__(self, spectra: xr.Dataset, tube: ReferenceTube) -> None:
         self.tube = tube
         self.averages = float(spectra["effective_averages"])
+        self.force_known = spectra.attrs.get("force") != UNKNOWN
         self.frequency = tube.frequency
         self.outputs = complex_values(spectra, "sensor_spectra")
         self.line = complex_values(spectra, "line_spectra")
@@ -207,9 +237,9 @@ class CaseSpectra:
     def shape(self, fit: PeakFit | None) -> tuple[DeflectionShape, ShapeMatch] | None:
         """Return the shape of the band above 1/25 of the fitted peak and its match.
 
-        None without a peak, or for a band of too few bins.
+        None without a peak, on too few points, or for a band of too few bins.
         """
-        if fit is None:
+        if fit is None or len(self.line) < FEWEST_SHAPE_POINTS:
             return None
         edges = np.clip(fit.edges_Hz, self.line_frequency[0], self.line_frequency[-1])
         if edges[1] - edges[0] < FEWEST_SHAPE_BINS * self.tube.bins.spacing_Hz:
@@ -221,6 +251,8 @@ class CaseSpectra:
 
     def broadband(self) -> BroadbandFit | None:
         """Return the BroadbandFit, or None."""
+        if not self.force_known:
+            return None
         values = self.outputs[self.tube.sensors.broadband][:, self.tube.broadband]
         segments = values.real**2 + values.imag**2
         return identify_broadband(

@@ -14,7 +14,8 @@ import xarray as xr
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.spectra.welch import complex_values
 
-from .case_estimates import LOWEST_CORRELATION, LOWEST_MAC, without_damping
+from .broadband import NEEDS_FORCE, UNKNOWN
+from .case_estimates import LOWEST_CORRELATION, LOWEST_MAC, ONE_SENSOR, without_damping
 from .estimate import Estimate, flagged, mark_weak, unresolved
 from .graded_supports import MethodResult, graded_supports
 from .guards import peak_not_crossed
@@ -53,6 +54,7 @@ class SupportsCase:
     def __init__(self, spectra: xr.Dataset, tube: SupportsTube, config: ConfigPart) -> None:
         self.tube, self.config = tube, config
         self.averages = float(spectra["effective_averages"])
+        self.force_known = spectra.attrs.get("force") != UNKNOWN
         self.outputs = complex_values(spectra, "sensor_spectra")
         self.line = complex_values(spectra, "line_spectra")
         self.line_frequency = spectra["line_frequency"].values
@@ -68,8 +70,9 @@ class SupportsCase:
         spectra = or_none(self.by_spectra, shapes)
         peaks: dict[str, PeakFit | None] = dict.fromkeys(LEVELS)
         pole = None
-        if spectra is not None:
-            values = spectra.values
+        start = spectra or shapes
+        if start is not None:
+            values = start.values
             other = self.tube.other_modes(values.k, values.c)
             for method, level in LEVELS.items():
                 peaks[method] = or_none(
@@ -83,18 +86,18 @@ class SupportsCase:
                     self.averages,
                     self.segments,
                 )
-            pole = or_none(self.operational_pole, spectra)
+            pole = or_none(self.operational_pole, start)
         shape = or_none(self.main_shape, peaks["peak_25th"])
         return SupportsResult(peaks, pole, shape, spectra, shapes)
 
     def by_spectra(self, shapes: ShapesFit | None) -> SpectraFit | None:
-        """Return the SpectraFit, or None where the force has no power in the band.
+        """Return the SpectraFit, or None where the force is not known or has no power in the band.
 
         The supports of the shapes are one more start: spectra alone have more false minima.
         """
         tube = self.tube
         values = self.outputs[:, :, tube.broadband]
-        if not values.any():  # no bins, or no motion
+        if not values.any() or not self.force_known:  # no bins, no motion, or no force
             return None
         segments = (values.real**2 + values.imag**2).swapaxes(0, 1)
         moving = segments.any(axis=(0, 2))  # a dead sensor, or one at a node
@@ -111,9 +114,9 @@ class SupportsCase:
         return replace(found, curve=curve)
 
     def by_shapes(self) -> ShapesFit | None:
-        """Return the ShapesFit, or None where nothing along the line moves."""
+        """Return the ShapesFit, or None where nothing along the line moves, or one point does."""
         tube, kernel = self.tube, self.tube.kernel
-        if not np.any(tube.model.line_shapes[tube.structure.modes]):
+        if len(self.line) < 2 or not np.any(tube.model.line_shapes[tube.structure.modes]):
             return None
         measured = block_shapes(self.line, self.line_frequency, kernel)
         fine = tube.structure.frequency[tube.at_line.part]
@@ -131,11 +134,14 @@ class SupportsCase:
         starts = self.search.coarse_starts(coarse.cost, len(tube.directions), (SHAPE_LOSS,))
         return comparison.fit(starts, tube.lowest_stable_damping)
 
-    def operational_pole(self, spectra: SpectraFit) -> OperationalPole | None:
-        """Return the OperationalPole of the main peak, or None."""
+    def operational_pole(self, start: SpectraFit | ShapesFit) -> OperationalPole | None:
+        """Return the OperationalPole of the main peak, or None.
+
+        start: whose structure gives the bias of the estimator.
+        """
         lscf, tube = self.config.lscf, self.tube
         search = PoleSearch(tube.frequency, tuple(lscf.band_Hz), tube.bins.window, lscf.max_order)
-        values = spectra.values
+        values = start.values
         return operational_pole(
             self.outputs,
             tube.sensors.references,
@@ -183,22 +189,28 @@ def _estimates_by_pole(
     fit: PeakFit | OperationalPole | None,
 ) -> list[Estimate]:
     """Return the Estimates of the step that a pole adds to the broadband comparison."""
-    if result.spectra is None:
-        return _unresolved(case, method, _no_spectra(case))
     if fit is None:
         return _unresolved(case, method, "no resonance could be fitted to the main peak")
+    known = {"frequency": fit.frequency, "damping_ratio": fit.damping_ratio}
+    if result.spectra is None:
+        note = f"a pole alone tells no support from others; {_why(case)}"
+        return _unresolved(case, method, note, **known)
     start = result.spectra
     pole = (fit.frequency, fit.damping_ratio, fit.covariance)
     covariance = start.covariance if np.any(start.covariance) else _shape_of(start)
     step: PoleStep | None = step_to_pole(
         case.tube.structure, start.values.k, start.values.c, covariance, pole
     )
-    known = {"frequency": fit.frequency, "damping_ratio": fit.damping_ratio}
     if step is None:
         return _unresolved(case, method, "no supports give the main mode this pole", **known)
     scatter = step.covariance if np.any(start.covariance) else np.zeros_like(step.covariance)
     found = MethodResult(method, step.k, step.c, scatter, step.by_frequency, **known)
     return graded_supports(found, case.tube.structure, case.search)
+
+
+def _why(case: SupportsCase) -> str:
+    """Return why there is no broadband comparison."""
+    return _no_spectra(case) if case.force_known else NEEDS_FORCE
 
 
 def _shape_of(fit: SpectraFit) -> np.ndarray:
@@ -217,7 +229,8 @@ def _estimates_by_shapes(case: SupportsCase, result: SupportsResult) -> list[Est
     """Return the Estimates of the shapes: k alone."""
     fit = result.shapes
     if fit is None:
-        return _unresolved(case, "ods", "no supports have the shapes of the shape line")
+        still = "no supports have the shapes of the shape line"
+        return _unresolved(case, "ods", ONE_SENSOR if len(case.line) < 2 else still)
     # The error of the model is part of the covariance already.
     found = MethodResult(
         "ods", fit.values.k, np.full(len(fit.values.k), np.nan), fit.covariance, None
@@ -232,7 +245,7 @@ def _estimates_by_spectra(case: SupportsCase, result: SupportsResult) -> list[Es
     """Return the Estimates of the broadband comparison."""
     fit = result.spectra
     if fit is None:
-        return _unresolved(case, "broadband", _no_spectra(case))
+        return _unresolved(case, "broadband", _why(case))
     found = MethodResult("broadband", fit.values.k, fit.values.c, fit.covariance, fit.model_change)
     estimates = [
         without_damping(estimate) if at_edge else estimate

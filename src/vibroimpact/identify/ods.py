@@ -108,7 +108,7 @@ def linear_ods(
     part: selects the frequencies of the band.
     """
     motion = response.frf(k, c, part)
-    return np.linalg.eigh(motion @ motion.conj().T)[1][:, -1]
+    return np.linalg.eigh((motion @ motion.conj().swapaxes(1, 2)).sum(axis=0))[1][:, -1]
 
 
 def match_shape(

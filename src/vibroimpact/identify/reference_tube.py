@@ -79,6 +79,13 @@ def seen_band_Hz(force_band_Hz: Sequence[float], bins: Bins) -> tuple[float, flo
     return max(low, bins.spacing_Hz), min(high, bins.highest * bins.spacing_Hz)
 
 
+def on_grid(force_psd: np.ndarray | None, bins: Bins, grid: np.ndarray) -> np.ndarray | None:
+    """Return (point,) a relative PSD (frequency,) of the bins on a finer grid (point,) in Hz."""
+    if force_psd is None:
+        return None
+    return np.interp(grid, np.arange(force_psd.size) * bins.spacing_Hz, force_psd)
+
+
 class ReferenceTube:
     """Responses of the linear tube with any (k, c) at the sensors and along the shape line."""
 
@@ -90,12 +97,14 @@ class ReferenceTube:
         force_band_Hz: Sequence[float],
         broadband_Hz: Sequence[float],
         stiffness_range: Sequence[float],
+        force_psd: np.ndarray | None = None,
     ) -> None:
         """Prepare the family of responses.
 
         force_band_Hz: where the force has power.
         broadband_Hz: band of the broadband method; it is cut to that of the force.
         stiffness_range: N/m.
+        force_psd: (frequency,) relative PSD of the force on the bins; None for a white one.
         """
         self.model, self.bins, self.sensors = model, bins, sensors
         self.stiffness_range = (stiffness_range[0], stiffness_range[1])
@@ -104,7 +113,8 @@ class ReferenceTube:
         self.force_band_Hz = force_band_Hz
         fine = self.kernel.oversampling
         points = bins.highest * fine + self.kernel.half_width + 1
-        self.family = LinearFamily(self.modes, np.arange(points) * (bins.spacing_Hz / fine))
+        grid = np.arange(points) * (bins.spacing_Hz / fine)
+        self.family = LinearFamily(self.modes, grid, on_grid(force_psd, bins, grid))
         self.frequency = np.arange(bins.highest + 1) * bins.spacing_Hz
         columns = [model.sensor_names.index(name) for name in sensors.names]
         self.at_sensors = self.family.response(model.sensor_shapes[:, columns])
@@ -126,8 +136,8 @@ class ReferenceTube:
         response, own = self.at_sensors, slice(self.sensors.broadband, self.sensors.broadband + 1)
         return type(response)(
             response.frequency[index],
-            response.free[own, index],
-            response.residue[own, index],
+            response.free[:, own, index],
+            response.residue[:, own, index],
             response.compliance[index],
         )
 
@@ -265,7 +275,8 @@ class ReferenceTube:
         fine = self.kernel.oversampling
         every_bin = slice(0, self.bins.highest * fine + 1, fine)
         response = self.at_sensors.frf(support.k, c, every_bin) * self.excited
-        return response[:, None, :] * response[None, list(self.sensors.references), :].conj(), pole
+        seen = response[:, None, list(self.sensors.references), :].conj()
+        return (response[:, :, None, :] * seen).sum(axis=0), pole
 
     @cached_property
     def pole_error_at_zero(self) -> float:

@@ -16,7 +16,7 @@ from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.spectra.window_leakage import spectral_kernel
 
 from .peak import resonance
-from .reference_tube import STABLE_FRACTION, Bins, Sensors, compared_bins, seen_band_Hz
+from .reference_tube import STABLE_FRACTION, Bins, Sensors, compared_bins, on_grid, seen_band_Hz
 
 
 class SupportsTube:
@@ -33,12 +33,14 @@ class SupportsTube:
         sensors: Sensors,
         bands_Hz: tuple[Sequence[float], Sequence[float]],
         stiffness_range: Sequence[float],
+        force_psd: np.ndarray | None = None,
     ) -> None:
         """Prepare the compliances.
 
         reached: (directions, mode indices) that the force reaches.
         bands_Hz: bands of the force and of the broadband comparison.
         stiffness_range: N/m.
+        force_psd: (frequency,) relative PSD of the force on the bins; None for a white one.
         """
         self.model, self.bins, self.sensors = model, bins, sensors
         self.directions, modes = reached
@@ -50,7 +52,8 @@ class SupportsTube:
         fine = self.kernel.oversampling
         points = bins.highest * fine + self.kernel.half_width + 1
         grid = np.arange(points) * (bins.spacing_Hz / fine)
-        self.structure = SupportedStructure(model, self.directions, modes, grid)
+        psd = on_grid(force_psd, bins, grid)
+        self.structure = SupportedStructure(model, self.directions, modes, grid, psd)
         self.excited = (self.frequency >= force_band_Hz[0]) & (self.frequency <= force_band_Hz[1])
         self.force_band_Hz = force_band_Hz
         self._columns = [model.sensor_names.index(name) for name in sensors.names]

@@ -6,7 +6,7 @@ contact compliance G = B^T Z^-1 B. With its eigenvalues mu_j at each frequency e
 
     h = h_free - sum_j s r_j / (1 + s mu_j).
 
-The eigenvalues serve all outputs and all (k, c).
+The eigenvalues serve all outputs, all independent forces and all (k, c).
 """
 
 from dataclasses import dataclass
@@ -20,11 +20,11 @@ from .modes import contact_matrix, driven_block
 
 @dataclass(frozen=True)
 class DrivenModes:
-    """The modes that the force excites, and the contacts that they move.
+    """The modes that the forces excite, and the contacts that they move.
 
     omega, damping: (mode,) rad/s and 1/s.
     contact: (mode, contact) kg^-1/2, scaled by the square root of the contact's weight.
-    drive: (mode,) kg^-1/2.
+    drive: (mode, force) kg^-1/2.
     indices: (mode,) in the ModalModel.
     block: (mode,) bool, the uncoupled block that the drive moves most; its lowest mode is "the
         first mode".
@@ -52,13 +52,13 @@ class DrivenModes:
         return (self.contact.T * self.receptance(laplace)[..., None, :]) @ self.contact
 
 
-def driven_modes(model: ModalModel, channel: int = 0) -> DrivenModes:
-    """Return the DrivenModes of a model for one force channel.
+def driven_modes(model: ModalModel) -> DrivenModes:
+    """Return the DrivenModes of a model.
 
-    Raises ValueError when the force moves no contact.
+    Raises ValueError when no force moves a contact.
     """
-    first = driven_block(model, channel)
-    drive = model.drive_shapes[:, channel]
+    first = driven_block(model)
+    drive = model.drive_shapes
     indices = np.sort(
         np.concatenate([modes for modes, _ in model.blocks if np.any(drive[modes] != 0.0)])
     )
@@ -78,9 +78,12 @@ def driven_modes(model: ModalModel, channel: int = 0) -> DrivenModes:
 class FamilyResponse:
     """Displacement per unit force of every member of the family on one frequency grid.
 
+    The forces are independent and have the same PSD. A relative PSD that is given is part of the
+    responses, by its root.
+
     frequency: (frequency,) Hz.
-    free: (output, frequency) m/N, the tube without support.
-    residue: (output, frequency, contact) m²/N².
+    free: (force, output, frequency) m/N, the tube without support.
+    residue: (force, output, frequency, contact) m²/N².
     compliance: (frequency, contact) m/N, the eigenvalues mu.
 
     In the methods `part` selects frequencies (a slice or indices), and `outputs` is a slice of the
@@ -99,19 +102,20 @@ class FamilyResponse:
         part: slice | np.ndarray = slice(None),
         outputs: slice = slice(None),
     ) -> np.ndarray:
-        """Return the responses (output, frequency) in m/N for k in N/m and c in N s/m."""
+        """Return the responses (force, output, frequency) in m/N for k in N/m and c in N s/m."""
         support = (k + 2j * np.pi * c * self.frequency[part])[:, None]
         gain = support / (1.0 + support * self.compliance[part])
-        return self.free[outputs][:, part] - (self.residue[outputs][:, part] * gain).sum(axis=-1)
+        residue = self.residue[:, outputs][:, :, part]
+        return self.free[:, outputs][:, :, part] - (residue * gain).sum(axis=-1)
 
     def frf_slope(
         self, k: float, c: float, part: slice | np.ndarray = slice(None)
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return (responses (output, frequency), their derivative by s = k + i omega c)."""
+        """Return (responses (force, output, frequency), derivatives by s = k + i omega c)."""
         support = (k + 2j * np.pi * c * self.frequency[part])[:, None]
         share = 1.0 / (1.0 + support * self.compliance[part])
-        residue = self.residue[:, part]
-        return self.free[:, part] - (residue * (support * share)).sum(axis=-1), -(
+        residue = self.residue[:, :, part]
+        return self.free[:, :, part] - (residue * (support * share)).sum(axis=-1), -(
             residue * share**2
         ).sum(axis=-1)
 
@@ -122,9 +126,9 @@ class FamilyResponse:
         part: slice | np.ndarray = slice(None),
         outputs: slice = slice(None),
     ) -> np.ndarray:
-        """Return the displacement PSDs (output, frequency) in m²/N² per unit force PSD."""
+        """Return the displacement PSDs (output, frequency) in m²/N² per PSD of each force."""
         response = self.frf(k, c, part, outputs)
-        return response.real**2 + response.imag**2
+        return (response.real**2 + response.imag**2).sum(axis=0)
 
 
 class LinearFamily:
@@ -133,14 +137,25 @@ class LinearFamily:
     Responses at any outputs follow from them.
     """
 
-    def __init__(self, modes: DrivenModes, frequency: np.ndarray) -> None:
-        """Solve the eigenvalue problems; frequency (frequency,) in Hz."""
+    def __init__(
+        self, modes: DrivenModes, frequency: np.ndarray, force_psd: np.ndarray | None = None
+    ) -> None:
+        """Solve the eigenvalue problems.
+
+        frequency: (frequency,) Hz.
+        force_psd: (frequency,) relative PSD of the forces; None for white ones.
+        """
         self.modes = modes
         self.frequency = frequency
+        self._root = None if force_psd is None else np.sqrt(force_psd)
         self._receptance = modes.receptance(2j * np.pi * frequency)
         self._compliance, self._vectors = np.linalg.eig(modes.compliance(2j * np.pi * frequency))
-        reached = (self._receptance * modes.drive) @ modes.contact
-        self._excited = np.linalg.solve(self._vectors, reached[..., None])[..., 0]
+        self._excited = [
+            np.linalg.solve(self._vectors, ((self._receptance * drive) @ modes.contact)[..., None])[
+                ..., 0
+            ]
+            for drive in modes.drive.T
+        ]
 
     def response(
         self, shapes: np.ndarray, part: slice | np.ndarray = slice(None)
@@ -151,7 +166,10 @@ class LinearFamily:
         """
         shapes = shapes[self.modes.indices]
         receptance, vectors = self._receptance[part], self._vectors[part]
-        free = (receptance * self.modes.drive) @ shapes
+        free = np.stack([((receptance * drive) @ shapes).T for drive in self.modes.drive.T])
         observed = np.stack([(receptance * shape) @ self.modes.contact for shape in shapes.T])
-        residue = (observed[:, :, None, :] @ vectors)[:, :, 0, :] * self._excited[part]
-        return FamilyResponse(self.frequency[part], free.T, residue, self._compliance[part])
+        reached = (observed[:, :, None, :] @ vectors)[:, :, 0, :]
+        residue = np.stack([reached * excited[part] for excited in self._excited])
+        if self._root is not None:
+            free, residue = free * self._root[part], residue * self._root[part][:, None]
+        return FamilyResponse(self.frequency[part], free, residue, self._compliance[part])

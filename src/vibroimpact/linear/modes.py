@@ -29,21 +29,20 @@ def contact_matrix(model: ModalModel) -> np.ndarray:
     )
 
 
-def driven_block(model: ModalModel, channel: int = 0) -> np.ndarray:
-    """Return (mode,) indices of the uncoupled block that the drive moves most.
+def driven_block(model: ModalModel) -> np.ndarray:
+    """Return (mode,) indices of the uncoupled block that the force channels move most.
 
-    The measure is its static displacement under a unit force. For a tube driven across its plane
-    these are the out-of-plane modes. Raises ValueError when the drive moves no contact.
+    The measure is its static displacement under unit forces. For a tube driven across its plane
+    these are the out-of-plane modes. Raises ValueError when no force moves a contact.
     """
     blocks = [modes for modes, contacts in model.blocks if contacts]
     static = [
-        np.sum((model.drive_shapes[modes, channel] / np.maximum(model.omega[modes], 1.0)) ** 2)
+        np.sum((model.drive_shapes[modes] / np.maximum(model.omega[modes, None], 1.0)) ** 2)
         for modes in blocks
     ]
     if not blocks or max(static) == 0.0:
         raise ValueError(
-            f"force channel {channel} moves no contact point: no support stiffness can be seen"
-            " from it"
+            "the force moves no contact point: no support stiffness can be seen from it"
         )
     return blocks[int(np.argmax(static))]
 

@@ -82,21 +82,37 @@ def psd_family(
     frequency: np.ndarray,
     shape: np.ndarray,
     kind: str = "displacement",
-    channel: int = 0,
 ) -> np.ndarray:
     """Return (k, c, frequency) squared magnitude of the response per N: PSD per unit force PSD.
 
-    The unit is (m/N)², (m/s/N)² or (m/s²/N)². With G = V diag(l) V^-1 at one frequency, the
-    response is h_free - sum_j (a V)_j (V^-1 b)_j s / (1 + s l_j). One eigenvalue problem per
-    frequency serves all (k, c).
+    The forces of several channels are independent and have the same PSD. The unit is (m/N)²,
+    (m/s/N)² or (m/s²/N)². With G = V diag(l) V^-1 at one frequency, the response is
+    h_free - sum_j (a V)_j (V^-1 b)_j s / (1 + s l_j). One eigenvalue problem per frequency serves
+    all (k, c).
 
     k_grid: (k,) N/m.
     c_grid: (c,) N s/m.
     frequency: (frequency,) Hz.
     shape: (mode,) of the output.
-    kind, channel: as in frf.
+    kind: as in frf.
     """
-    frequency = np.asarray(frequency, dtype=float)
+    channels = range(model.drive_shapes.shape[1])
+    grids = (k_grid, c_grid, np.asarray(frequency, dtype=float))
+    total = _channel_psds(model, *grids, shape, 0)
+    for channel in channels[1:]:
+        total = total + _channel_psds(model, *grids, shape, channel)
+    return total * (2.0 * np.pi * grids[2]) ** (2 * TIME_DERIVATIVES[kind])
+
+
+def _channel_psds(
+    model: ModalModel,
+    k_grid: np.ndarray,
+    c_grid: np.ndarray,
+    frequency: np.ndarray,
+    shape: np.ndarray,
+    channel: int,
+) -> np.ndarray:
+    """Return (k, c, frequency) (m/N)², psd_family of displacements by one force channel."""
     laplace = 2j * np.pi * frequency
     free, compliance, reached, seen = _contact_receptances(
         model, laplace, np.asarray(shape)[:, None], channel
@@ -112,7 +128,7 @@ def psd_family(
     response = np.broadcast_to(free[:, 0], support.shape).copy()
     for term in range(flexibility.shape[1]):
         response -= share[:, term] * support / (1.0 + support * flexibility[:, term])
-    return (response.real**2 + response.imag**2) * np.abs(laplace) ** (2 * TIME_DERIVATIVES[kind])
+    return response.real**2 + response.imag**2
 
 
 def synthesise_records(

@@ -59,8 +59,14 @@ class SupportedStructure:
         directions: Sequence[SupportDirection],
         modes: np.ndarray,
         frequency: np.ndarray,
+        force_psd: np.ndarray | None = None,
     ) -> None:
-        """Compute the compliances of the structure without supports."""
+        """Compute the compliances of the structure without supports.
+
+        force_psd: (frequency,) relative PSD of the forces, whose root is part of all responses;
+            None for white ones.
+        """
+        self._root = None if force_psd is None else np.sqrt(force_psd)[:, None, None]
         self.directions, self.modes, self.frequency = tuple(directions), modes, frequency
         self.omega, self.damping = model.omega[modes], model.damping[modes]
         self.drive = model.drive_shapes[modes]
@@ -70,7 +76,7 @@ class SupportedStructure:
         laplace = 2j * np.pi * frequency[:, None]
         self._receptance = 1.0 / (laplace**2 + laplace * self.damping + self.omega**2)
         self._compliance = self._products(self.contact, self.contact)
-        self._reached = self._products(self.contact, self.drive)
+        self._reached = self._driven(self.contact)
 
     def _products(
         self, left: np.ndarray, right: np.ndarray, part: slice | np.ndarray = slice(None)
@@ -79,10 +85,15 @@ class SupportedStructure:
         pairs = (left[:, :, None] * right[:, None, :]).reshape(len(left), -1)
         return (self._receptance[part] @ pairs).reshape(-1, left.shape[1], right.shape[1])
 
+    def _driven(self, shapes: np.ndarray, part: slice | np.ndarray = slice(None)) -> np.ndarray:
+        """Return (frequency, output, channel) the motion of outputs by the forces."""
+        moved = self._products(shapes, self.drive, part)
+        return moved if self._root is None else moved * self._root[part]
+
     def observed(self, shapes: np.ndarray, part: slice | np.ndarray = slice(None)) -> Observed:
         """Return the Observed of outputs with shapes (mode of the model, output)."""
         outputs = shapes[self.modes]
-        free = self._products(outputs, self.drive, part)
+        free = self._driven(outputs, part)
         return Observed(free, self._products(self.contact, outputs, part), part)
 
     def dynamic_stiffness(

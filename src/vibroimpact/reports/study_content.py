@@ -113,6 +113,9 @@ class StudyContent:
     unmoved: Sequence[tuple[str, str]] = ()
     warnings: Sequence[str] = ()
 
+    kind = "study"
+    scatter = "seeds"
+
     @property
     def name(self) -> str:
         """The name of the study."""

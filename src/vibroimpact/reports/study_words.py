@@ -104,16 +104,16 @@ def _listed(texts: Sequence[str]) -> str:
     return texts[0] if len(texts) == 1 else f"{', '.join(texts[:-1])} and {texts[-1]}"
 
 
-def headline(config: Any, answers: Sequence[Answer]) -> list[str]:
+def headline(config: Any, answers: Sequence[Answer], unit: str = "") -> list[str]:
     """Return the answer in sentences: how often k and c are resolved, and their course with load.
 
-    config: of the study.
+    config: of the study. unit: of the levels, that of its loads by default.
     """
     if not answers:
         return []
     places = list(dict.fromkeys(row.place for row in answers))
     several = len({place[1:] for place in places}) > 1
-    unit = load_unit(config)
+    unit = unit or load_unit(config)
     sentences = [_agreement(answers, quantity, several) for quantity in ("k", "c")]
     each = several or any(row.group != ALL_SUPPORTS for row in answers)
     sentences += _readings(config, answers, each)

@@ -66,7 +66,8 @@ class CaseSpectra:
         ]
         frequency, line_frequency = (transform.frequency for transform in self._transforms)
         force = config.excitation
-        driven = driven_axes(force.direction) if hasattr(force, "direction") else tuple("xyz")
+        one = hasattr(force, "direction") and not getattr(force, "both_directions", False)
+        driven = driven_axes(force.direction) if one else tuple("xyz")
         self._driven = [
             index for index, name in enumerate(sensors) if name.rsplit(".", 1)[-1] in driven
         ]

@@ -47,16 +47,17 @@ def synthetic_campaign(
         Channel(f"{name}.acceleration", tuple(point), tuple(direction), "m s-2", "acceleration")
         for name, point, direction in sensors
     ]
-    drive = Channel(
-        "drive", config.points[config.excitation.point], config.excitation.direction, "N", "generic"
-    )
-    force = np.array([record["force"].values for record in records])[:, None, :]
+    force, drives = np.zeros(0), []  # turbulence has no force that a sensor measures
+    if "point" in config.excitation:
+        place, direction = config.points[config.excitation.point], config.excitation.direction
+        drives = [Channel("drive", place, direction, "N", "generic")]
+        force = np.array([record["force"].values for record in records])[:, None, :]
     levels = [Level(f"load_{case.load_rms_N:g}N", gap) for case in cases]
-    return campaign_dataset(
+    campaign = campaign_dataset(
         force,
         response,
         channels,
-        [drive],
+        drives,
         levels,
         config.record.sampling_frequency_Hz,
         start_up="stationary",
@@ -65,3 +66,6 @@ def synthetic_campaign(
             f" {config.overlay.noise:g}"
         ),
     )
+    if drives:
+        return campaign
+    return campaign.assign(load_rms=("record", np.array(loads, float), {"units": "N"}))

@@ -14,13 +14,14 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.campaign.base_motion import base_motion_rows, relative_to_base
-from vibroimpact.campaign.contract import contract_problems
+from vibroimpact.campaign.contract import NO_FORCE, contract_problems
 from vibroimpact.campaign.file import (
     LARGEST,
     CampaignError,
     decode_texts,
     fill_missing,
     opened_campaign,
+    with_no_force,
 )
 from vibroimpact.campaign.signals import (
     SEGMENT_S,
@@ -98,7 +99,7 @@ def check_file(path: str | Path) -> tuple[xr.Dataset | None, list[dict]]:
     if any(row["check"] == "contract" and row["level"] == "refuse" for row in rows):
         return None, rows
     try:
-        return fill_missing(campaign), rows
+        return fill_missing(with_no_force(campaign)), rows
     except CampaignError:  # a row refuses the unit of the force
         return None, rows
 
@@ -111,7 +112,10 @@ def check_campaign(campaign: xr.Dataset) -> list[dict]:
     that follows looks at the motion relative to the base.
     """
     campaign = decode_texts(campaign)
-    problems = [*contract_problems(campaign)]
+    given = with_no_force(campaign)
+    problems = [*contract_problems(given, force_needed=given is campaign)]
+    if not problems and given is not campaign:
+        return _without_force(given)
     if problems:
         return [check_row("contract", "refuse", f"{problem}.") for problem in problems]
     try:
@@ -147,6 +151,18 @@ def check_campaign(campaign: xr.Dataset) -> list[dict]:
         check_row(check, "pass", said) for check, said in PASSED.items() if check not in complained
     ]
     return sorted(rows, key=lambda row: CHECKS.index(BESIDE.get(row["check"], row["check"])))
+
+
+def _without_force(campaign: xr.Dataset) -> list[dict]:
+    """Return the rows of what can be checked of a campaign whose force was not measured."""
+    measured = campaign_signals(fill_missing(campaign))
+    return [
+        *unit_rows(measured),
+        *size_rows(campaign, measured),
+        *time_rows(campaign, measured),
+        *_signal_faults(measured),
+        check_row("content", "refuse", f"The campaign {NO_FORCE}."),
+    ]
 
 
 PASSED = {
@@ -205,7 +221,7 @@ def usable_signals(campaign: xr.Dataset, rows: list[dict]) -> tuple[np.ndarray, 
 def _signal_faults(measured):
     """Yield rows of faults of single signals, record by record."""
     for record, name in enumerate(measured.records):
-        period = measured.period_samples or common_period([measured.force[record][0]])
+        period = measured.period_samples or common_period(list(measured.force[record][:1]))
         forces = [
             (measured.forces[index], signal) for index, signal in enumerate(measured.force[record])
         ]
@@ -214,7 +230,8 @@ def _signal_faults(measured):
             for index, signal in enumerate(measured.response[record])
         ]
         for place, (channel, signal) in enumerate(forces + responses):
-            what = "The record is left out" if place == 0 else "It is left out of this record"
+            driving = place == 0 and forces
+            what = "The record is left out" if driving else "It is left out of this record"
             yield from _faults_of(signal, period, measured, name, channel, what)
 
 

@@ -7,7 +7,13 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from vibroimpact.campaign.file import Level, campaign_dataset, contract_problems, load_of
+from vibroimpact.campaign.file import (
+    Level,
+    campaign_dataset,
+    contract_problems,
+    load_of,
+    with_no_force,
+)
 from vibroimpact.units import si_factor, si_unit
 
 from .cuts import Cut, cut_records
@@ -37,7 +43,8 @@ def import_folder(folder: str | Path) -> tuple[xr.Dataset, list[dict]]:
         raise ImportProblem("\n".join(dict.fromkeys(measured.problems)))
     cuts = cut_records(sensors, voltage, rate, measured)
     campaign = _campaign(sidecar, sensors, cuts, rate, voltage)
-    breaches = [f"{folder / NAME}: the campaign {line}" for line in contract_problems(campaign)]
+    problems = contract_problems(with_no_force(campaign), force_needed=bool(sidecar.forces))
+    breaches = [f"{folder / NAME}: the campaign {line}" for line in problems]
     if breaches:
         raise ImportProblem("\n".join(breaches))
     return campaign, _rows(sensors, cuts, rate)
@@ -100,7 +107,9 @@ def _campaign(sidecar, sensors, cuts, rate, voltage):
         [sensor.channel for sensor in groups[role]] for role in ("response", "force")
     )
     stated = {} if sidecar.band_Hz is None else {"band_Hz": sidecar.band_Hz}
-    loads = [load_of(force[0], rate, sidecar.band_Hz) for force in stacked["force"]]
+    loads = [np.nan] * len(cuts)
+    if drives:
+        loads = [load_of(force[0], rate, sidecar.band_Hz) for force in stacked["force"]]
     return campaign_dataset(
         stacked["force"],
         stacked["response"],

@@ -8,6 +8,7 @@ from typing import Any
 import xarray as xr
 
 from vibroimpact.campaign.checks.file_checks import COLUMNS, check_campaign
+from vibroimpact.campaign.file import with_no_force
 from vibroimpact.records import write_table, write_text
 
 SHOWN = {
@@ -44,6 +45,7 @@ def import_text(
     rows: of assemble.import_folder.
     checks: rows of check_campaign.
     """
+    campaign = with_no_force(campaign)
     loads, gaps = campaign["load_rms"].values, campaign["gap"].values
     lines = [
         f"Imported from {Path(folder).name}: {campaign.sizes['record']} records at"
@@ -55,10 +57,13 @@ def import_text(
     ]
     for record, name in enumerate(str(value) for value in campaign["record_name"].values):
         sensors = [row for row in rows if row["record"] == name]
+        load = f"load {loads[record]:.4g} {sensors[0]['unit_SI']} RMS"
+        if not campaign.sizes["force_channel"]:
+            load = "no force"
         gap = f"gap {gaps[record] * 1e3:.4g} mm" if gaps[record] == gaps[record] else "no gap"
         lines += [
             f"Record {name}: {sensors[0]['samples']} samples, {sensors[0]['duration_s']:.4g} s,"
-            f" load {loads[record]:.4g} {sensors[0]['unit_SI']} RMS, {gap},"
+            f" {load}, {gap},"
             f" {campaign['split'].values[record]}"
         ]
         lines += [
@@ -89,7 +94,7 @@ def checks_text(checks: list[dict]) -> str:
     counts = {level: sum(row["level"] == level for row in checks) for level in order}
     usability = "can be used, with care" if counts["warn"] else "can be used"
     if counts["refuse"]:
-        usability = "can not be used"
+        usability = "gives no verdict"
     lines = [
         f"Checks: the campaign {usability}; {counts['pass']} checks passed, {counts['warn']}"
         f" warnings, {counts['refuse']} refusals, {counts['not checked']} not checked.",

@@ -138,7 +138,7 @@ class Sidecar(Section):
     start_up: Literal["rest", "stationary"] = "stationary"
     period_samples: PeriodSamples = 0
     transient_periods: TransientPeriods = 0
-    forces: tuple[Drive, ...] = Field(min_length=1)
+    forces: tuple[Drive, ...]  # none where no force was measured
     channels: tuple[Sensor, ...] = Field(min_length=1)
     records: tuple[Record, ...] = Field(min_length=1)
     voltage: Voltage | None = None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.campaign.file import force_units
+from vibroimpact.campaign.file import force_units, with_no_force
 from vibroimpact.campaign.force_kinds import BASE, FORCE, unit_kinds
 from vibroimpact.campaign.signals import Averaging, campaign_signals, transfer_band
 from vibroimpact.figures.sheet import Sheet
@@ -46,6 +46,7 @@ def quicklook(campaign):
 
     There is a panel for each of the first 12 forces and responses, and one of the levels.
     """
+    campaign = with_no_force(campaign)
     measured = campaign_signals(campaign)
     panels = [
         ("force", index, name, _shown_unit(force_units(campaign, index), kind))
@@ -100,6 +101,11 @@ def quicklook(campaign):
     return [sheet]
 
 
+def _drive(measured):
+    """Return the kind of the first force channel; that of a force where none was measured."""
+    return (*measured.force_kinds, FORCE)[0]
+
+
 def _title(measured):
     duration = max(signal.shape[-1] for signal in measured.force) / measured.rate
     forces = f"{len(measured.forces)} force{'s' if len(measured.forces) > 1 else ''}"
@@ -133,7 +139,7 @@ def _spectra(sheet, axes, measured, signal, unit, colours, band):
     """Draw the PSDs of one force or response, ("force" or "response", index), record by record."""
     role, index = signal
     column = PSD_COLUMNS.get(unit, "psd_unit2_per_Hz")
-    load_unit = "m/s²" if measured.force_kinds[0] == BASE else "N"
+    load_unit = "m/s²" if _drive(measured) == BASE else "N"
     lowest, highest = np.inf, 0.0
     for record in np.argsort(measured.load_rms, kind="stable"):
         values = getattr(measured, role)[record][index]
@@ -148,14 +154,15 @@ def _spectra(sheet, axes, measured, signal, unit, colours, band):
             (column, psd),
             measured.records[record],
             tags={
-                LOADS[measured.force_kinds[0]]: float(load),
+                LOADS[_drive(measured)]: float(load),
                 "split": measured.splits[record],
             },
             color=colours.get(load, BLACK),
             linewidth=0.9,
             linestyle="--" if held else "-",
-            label=f"{measured.records[record]} ({load:.3g} {load_unit} RMS"
-            f"{', held out' if held else ''})",
+            label=measured.records[record]
+            + (f" ({load:.3g} {load_unit} RMS" if measured.forces else " (no force")
+            + f"{', held out' if held else ''})",
         )
         lowest, highest = min(lowest, np.percentile(psd, 3)), max(highest, psd.max())
     if not highest > 0.0:
@@ -189,10 +196,10 @@ def _binned(values, rate, band):
 
 def _levels(sheet, axes, measured):
     """Draw the RMS of every response over its RMS at the lowest level, against load."""
-    load_column = LOADS[measured.force_kinds[0]]
+    load_column = LOADS[_drive(measured)]
     order = np.argsort(measured.load_rms, kind="stable")
     loads = measured.load_rms[order]
-    for index, name in enumerate(measured.channels):
+    for index, name in enumerate(measured.channels if measured.forces else ()):
         rms = np.array([np.std(measured.response[record][index]) for record in order])
         if not (np.isfinite(rms[0]) and rms[0] > 0.0):
             continue
@@ -207,8 +214,9 @@ def _levels(sheet, axes, measured):
             label=name,
             alpha=0.85,
         )
-    if not axes.lines:
-        sheet.note(axes, "no response without holes", load_column, "rms_over_lowest")
+    if not axes.lines or not np.isfinite(loads).all():
+        why = "no response without holes" if measured.forces else "no force was measured"
+        sheet.note(axes, why, load_column, "rms_over_lowest")
         return
     line = np.array([loads[0], loads[-1]])
     sheet.line(

@@ -26,16 +26,19 @@ PREDICTED = ("statistical_linearisation", "secant")
 MOST_COLUMNS = 4  # gaps side by side; more begin another block below
 
 
-def figure_13_equivalent_support(config, model, rows):
+def figure_13_equivalent_support(config, model, rows, level="load_rms_N", study=None, caption=""):
     """Return the Sheet of k and c against load, a colour and marker per method.
 
     There is a column per gap, and per group of supports and direction where there are several.
 
     rows: the consistency table, list of {column: value}.
+    level: column of the loads; response_rms_m where they are the RMS of the response.
+    study: {gap in m: rows of a study} whose curve is drawn behind measured points; None for none.
+    caption: in the place of that of a study.
     """
     places = _places(rows)
     columns = "a column per gap" if len(places) == 1 else "a column per group of supports and gap"
-    caption = (
+    caption = caption or (
         f"Equivalent bilateral support by each method against load, {columns}: stiffness k"
         " (top) and damping c on top of the modal damping (bottom), per support; median over seeds,"
         " bars from the smallest to the largest seed. What a method does not resolve is left out:"
@@ -60,10 +63,12 @@ def figure_13_equivalent_support(config, model, rows):
     )
     for (gap, place), (top, bottom) in panels.items():
         chosen = [row for row in rows if row["gap_m"] == gap and _place(row) == place]
-        _methods(sheet, sheet.axes[top], chosen, "k_N_per_m", (*METHODS,))
-        _methods(
-            sheet, sheet.axes[bottom], chosen, "c_N_s_per_m", (*OPEN_METHODS, "lscf", "broadband")
-        )
+        beside = [row for row in (study or {}).get(gap, ()) if _place(row) == place]
+        for key, column in ((top, "k_N_per_m"), (bottom, "c_N_s_per_m")):
+            _study_curve(sheet, sheet.axes[key], beside, column)
+        _methods(sheet, sheet.axes[top], chosen, "k_N_per_m", (*METHODS,), level)
+        damped = (*OPEN_METHODS, "lscf", "broadband")
+        _methods(sheet, sheet.axes[bottom], chosen, "c_N_s_per_m", damped, level)
         title = f"gap {gap_label(gap, outer_width(config.structure.section))}"
         if len(places) > 1:
             title = f"{place[0]} in {place[1]}" + (f", {gap * 1e3:.3g} mm" * (len(gaps) > 1))
@@ -94,7 +99,28 @@ def figure_13_equivalent_support(config, model, rows):
     return [sheet]
 
 
-def _methods(sheet, axes, rows, column, methods):
+def _study_curve(sheet, axes, rows, column):
+    """Draw the median of a study's compared methods against load, and their range."""
+    usable = [row for row in rows if row["method"] in COMPARED and np.isfinite(row[column])]
+    loads = sorted({row["load_rms_N"] for row in usable})
+    if not loads:
+        return
+    values = [[row[column] for row in usable if row["load_rms_N"] == load] for load in loads]
+    sheet.line(
+        axes,
+        ("load_rms_N", np.array(loads)),
+        (column, np.array([np.median(each) for each in values])),
+        "study",
+        [min(each) for each in values],
+        [max(each) for each in values],
+        color=GREY,
+        linewidth=1.6,
+        label="study, range of methods and seeds",
+        zorder=0,
+    )
+
+
+def _methods(sheet, axes, rows, column, methods, level):
     """Draw one quantity by every method: predictions as lines, others with their seed scatter."""
     for method in methods:
         label, colour, marker = METHODS[method]
@@ -103,12 +129,13 @@ def _methods(sheet, axes, rows, column, methods):
             for row in rows
             if row["method"] == method and (column != "k_N_per_m" or row[column] > 0.0)
         ]
+        chosen = [{**row, level: row["load_rms_N"]} for row in chosen]
         if method in PREDICTED:
-            place, value = medians(chosen, "load_rms_N", column)
+            place, value = medians(chosen, level, column)
             if place.size:
                 sheet.line(
                     axes,
-                    ("load_rms_N", place),
+                    (level, place),
                     (column, value),
                     method,
                     color=colour,
@@ -124,7 +151,7 @@ def _methods(sheet, axes, rows, column, methods):
             sheet,
             axes,
             chosen,
-            "load_rms_N",
+            level,
             column,
             method,
             color=colour,
@@ -135,7 +162,7 @@ def _methods(sheet, axes, rows, column, methods):
             zorder=3 if method in OPEN_METHODS else 4,
         )
     if not axes.get_xlabel():
-        sheet.note(axes, _why_empty(rows), "load_rms_N", column)
+        sheet.note(axes, _why_empty(rows), level, column)
 
 
 def _why_empty(rows):

@@ -6,8 +6,9 @@ import numpy as np
 
 from vibroimpact.campaign.file import channel_at, channel_signal
 from vibroimpact.figures.sheet import Sheet
-from vibroimpact.figures.style import BLACK, BLUE, GREEN, RED, gap_label, label_of
+from vibroimpact.figures.style import BLACK, BLUE, GREEN, RED, gap_label, label_of, shown
 from vibroimpact.geometry.sections import outer_width
+from vibroimpact.linear.responses import response_psd
 from vibroimpact.spectra.welch import psd_statistics, segment_spectra
 from vibroimpact.study.synthetic_campaign import SYNTHETIC
 
@@ -178,3 +179,119 @@ def _mark_modes(sheet, axes, model, band):
                 label=name if index == 0 else None,
                 zorder=0,
             )
+
+
+def figure_05_measured(config, model, measured, supports, simulated=None, level="load_rms_N"):
+    """Return the Sheet of measured spectra over those of the equivalent linear tube, and of a
+    study's simulation where there is one, a panel per load.
+
+    measured, simulated: Responses, the latter of a study of the same tube.
+    supports: {load: (k in N/m, c in N s/m, relative PSD (low_frequency,) of the force or None)} of
+        the loads at which they are known.
+    level: column of the loads; response_rms_m where they are the RMS of the response.
+    """
+    sensor = driven_sensor(config, config.identification.response_point)
+    chosen = np.unique(
+        np.round(np.linspace(0, measured.load.size - 1, min(LEVELS, measured.load.size)))
+    ).astype(int)
+    keys = [f"level {index}" for index in chosen]
+    mosaic = [keys[row : row + 2] for row in range(0, len(keys), 2)]
+    if len(mosaic[-1]) < len(mosaic[0]):
+        mosaic[-1].append(".")
+    sheet = Sheet(
+        "figure_05_overlay",
+        "Measured spectra over the equivalent linear tube",
+        _measured_caption(config, sensor, measured.gap_m, simulated is not None),
+        mosaic,
+        size=(9.0, 0.6 + 3.0 * len(mosaic)),
+        sharex=True,
+    )
+    for key, index in zip(keys, chosen, strict=True):
+        axes, load = sheet.axes[key], float(measured.load[index])
+        _measured_panel(sheet, axes, model, sensor, (measured, index), level)
+        if simulated is not None:
+            _nearest_simulation(sheet, axes, model, simulated, load)
+        if load in supports:
+            band = config.identification.broadband.band_Hz
+            _equivalent_line(sheet, axes, model, sensor, (measured, index, band), supports[load])
+        _mark_modes(sheet, axes, model, shown_band(model, measured.frequency[-1]))
+        axes.set_title(f"{label_of(level).partition(' (')[0].lower()} {_in_unit(level, load)}")
+    named = {}
+    for key in keys:  # an equivalent support may be known at one level only
+        handles, labels = sheet.axes[key].get_legend_handles_labels()
+        named = dict(zip(labels, handles, strict=True)) | named
+    sheet.figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=3)
+    return [sheet]
+
+
+def _measured_caption(config, sensor, gap_m, simulated):
+    """Return the caption of measured spectra; simulated: whether a study is drawn too."""
+    beside = " Blue: simulation of the study at the nearest load." if simulated else ""
+    return (
+        f"PSD of acceleration at {sensor.rpartition('.')[0]}, gap"
+        f" {gap_label(gap_m, outer_width(config.structure.section))}: measured (green;"
+        " thick: mean over segments and records, dotted: smallest and largest segment). Black: the"
+        " linear tube on its equivalent support in the band of the broadband comparison, its level"
+        f" fitted.{beside} Vertical: modes of the"
+        " driven plane of the tube, free (black, dashed) and held at the supports (red, dashed)."
+    )
+
+
+def _in_unit(level, value):
+    """Return a level with the unit of its axis."""
+    return f"{shown(level, value):.3g} {label_of(level).partition(' (')[2].rstrip(')')}"
+
+
+def _measured_panel(sheet, axes, model, sensor, measured, level):
+    """Draw one level of Responses, (Responses, index)."""
+    responses, index = measured
+    band = shown_band(model, responses.frequency[-1])
+    statistics = [
+        responses.psd["acceleration", sensor, name][index] for name in ("mean", "min", "max")
+    ]
+    tags = {level: responses.load[index]}
+    _spectrum(sheet, axes, band, responses.frequency, statistics, "measured", tags, GREEN)
+    axes.set_yscale("log")
+    axes.set_xlim(band)
+    inside = (responses.frequency >= band[0]) & (responses.frequency <= band[1])
+    mean, largest = statistics[0][inside], statistics[2][inside]
+    axes.set_ylim(0.01 * np.percentile(mean, 1.0), 3.0 * largest.max())
+
+
+def _nearest_simulation(sheet, axes, model, simulated, load):
+    """Draw the Responses of a study at the nearest load."""
+    nearest = int(np.argmin(np.abs(np.log(simulated.load / load))))
+    (name,) = {sensor for _, sensor, _ in simulated.psd}
+    statistics = [
+        simulated.psd["acceleration", name, each][nearest] for each in ("mean", "min", "max")
+    ]
+    band = shown_band(model, simulated.frequency[-1])
+    tags = {"load_rms_N": simulated.load[nearest]}
+    _spectrum(sheet, axes, band, simulated.frequency, statistics, "simulation", tags, BLUE)
+
+
+def _equivalent_line(sheet, axes, model, sensor, measured, support):
+    """Draw the PSD of the linear tube on a support (k, c, PSD of the force), its level fitted.
+
+    measured: (Responses, index of the level, band in Hz).
+    """
+    responses, index, band = measured
+    k, c, force = support
+    inside = (responses.frequency >= band[0]) & (responses.frequency <= band[1])
+    frequency = responses.frequency[inside]
+    shape = model.sensor_shapes[:, [model.sensor_names.index(sensor)]]
+    psd = response_psd(model, k, c, frequency, shape, "acceleration")[0]
+    if force is not None:
+        psd = psd * np.interp(frequency, force["low_frequency"].values, force.values)
+    mean = responses.psd["acceleration", sensor, "mean"][index][inside]
+    sheet.line(
+        axes,
+        ("frequency_Hz", frequency),
+        ("psd_m2_per_s4_per_Hz", psd * np.exp(np.mean(np.log(mean / psd)))),
+        "linear tube on the equivalent support",
+        tags={"k_N_per_m": k},
+        color=BLACK,
+        linewidth=1.0,
+        label="linear tube on the equivalent support",
+        zorder=4,
+    )

@@ -7,11 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.excitation.force_files import read_force
+from vibroimpact.excitation.line_force_spectrum import line_force_psd
+from vibroimpact.geometry.sections import outer_width
 from vibroimpact.spectra.welch import driven_axis, psd_statistics, segment_spectra
 
 from .cases_of_gap import paths_of_gap, shown_gap
 from .linear_limits import shown_band
 
+BAND_POINTS = 4000  # of the integral over the band of a force
 QUANTITIES = ("displacement", "acceleration")
 STATISTICS = {
     "mean": np.add,
@@ -119,12 +122,17 @@ def _in_plane_share(dataset, driven):
 def unit_force_psd(config, frequency):
     """Return the one-sided PSD (frequency,) in N²/Hz of the drive at 1 N RMS.
 
-    It is flat in its band, or that of the measured record.
+    It is flat in its band, that of turbulence, or that of the measured record.
     """
     excitation = config.excitation
     if excitation.kind == "band_limited":
         low, high = excitation.band_Hz
         return np.where((frequency >= low) & (frequency <= high), 1.0 / (high - low), 0.0)
+    if excitation.kind == "turbulence":
+        diameter = outer_width(config.structure.section)
+        psd = line_force_psd(excitation, diameter, frequency)
+        fine = np.linspace(*excitation.band_Hz, BAND_POINTS)
+        return psd / np.trapezoid(line_force_psd(excitation, diameter, fine), fine)
     values, rate = read_force(
         excitation.file, excitation.variable, excitation.sampling_frequency_Hz
     )

@@ -31,24 +31,30 @@ LOWEST_SHARE_DB = -100.0  # below it is the effect of the seeded imperfection al
 LINEAR_STIFFNESS_STEPS = 90
 
 
-def figure_06_levels(config, model, responses):
+def figure_06_levels(config, model, responses, level="load_rms_N"):
     """Return the Sheet of PSD / load² over frequency and load, at two points.
 
     They are the response point and the broadband point.
+
+    level: column of the loads; response_rms_m where they are the RMS of the response.
     """
+    word, column = {
+        "load_rms_N": ("load", "psd_dB"),
+        "response_rms_m": ("response", "psd_per_response2_dB"),
+    }[level]
     points = list(
         dict.fromkeys((config.identification.response_point, config.identification.broadband.point))
     )
     caption = (
-        "PSD of displacement divided by the square of the load, over frequency and load,"
+        f"PSD of displacement divided by the square of the {word}, over frequency and {word},"
         f" {_gap_words(config, responses)}, mean over segments and seeds. Where the tube is linear"
-        " a column has one colour; peaks that move to the right with the load show the stiffening"
-        " by contact. Triangles: modes of the driven plane of the free tube (bottom) and in full"
-        " bilateral contact (top)."
+        f" a column has one colour; peaks that move to the right with the {word} show the"
+        " stiffening by contact. Triangles: modes of the driven plane of the free tube (bottom) and"
+        " in full bilateral contact (top)."
     )
     sheet = Sheet(
         "figure_06_levels",
-        "Peaks of the response against load",
+        f"Peaks of the response against {'load' if word == 'load' else 'its level'}",
         caption,
         [points],
         size=(7.6, 4.4),
@@ -70,16 +76,16 @@ def figure_06_levels(config, model, responses):
         mesh = sheet.map(
             axes,
             ("frequency_Hz", responses.frequency[kept]),
-            ("load_rms_N", responses.load),
-            ("psd_dB", values),
-            "mean PSD / load²",
+            (level, responses.load),
+            (column, values),
+            f"mean PSD / {word}²",
             vmin=top - DYNAMIC_RANGE_DB,
             vmax=top,
         )
         _mark_modes(sheet, axes, model, band)
         axes.label_outer()
     _legend_of_modes(sheet, axes)
-    sheet.colour_bar(mesh, list(sheet.axes.values()), "psd_dB", extend="min")
+    sheet.colour_bar(mesh, list(sheet.axes.values()), column, extend="min")
     return [sheet]
 
 

@@ -326,7 +326,7 @@ def _draw_points(sheet, axes, config, structure, view, columns):
         lines = [wrapped(", ".join(names))]
         if set(names) & set(config.record.sensors.points):
             lines.append(f"sensors {', '.join(config.record.sensors.directions)}")
-        if config.excitation.point in names:
+        if getattr(config.excitation, "point", None) in names:
             others = ", ".join(name for name in names if name != config.excitation.point)
             lines[0] = wrapped(others) if others else ""
             lines.append(f"drive\n{wrapped(config.excitation.point)}")
