@@ -198,7 +198,6 @@ def test_checks_that_a_sine_does_not_allow_are_not_checked():
     text = checks_text(rows)
     assert f"{', '.join(AVERAGED)}: Not checked: cell excites" in text and "as a sine does" in text
     assert f"0 refusals, {len(AVERAGED)} not checked" in text
-    assert not {row["check"] for row in check_campaign(made)} & set(AVERAGED)
 
 
 def test_a_file_without_time_is_not_checked_for_it():

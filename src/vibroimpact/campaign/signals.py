@@ -169,7 +169,10 @@ def campaign_signals(campaign: xr.Dataset) -> CampaignSignals:
         force_kinds=force_kinds(campaign),
         load_rms=_loads(
             campaign["load_rms"].values.astype(float),
-            [load_of(each[0], rate, band_of(campaign.attrs)) for each in force],
+            [
+                load_of(each[0], rate, band_of(campaign.attrs)) if each.size else np.nan
+                for each in force
+            ],
         ),
         gap=campaign["gap"].values.astype(float),
         splits=(
