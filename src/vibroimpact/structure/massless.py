@@ -68,7 +68,8 @@ def condense_massless(
     mass: sparse.csr_array, stiffness: sparse.csr_array, named: Sequence[int]
 ) -> Condensed | None:
     """Return the Condensed structure; None where every direction has mass, where there are too many
-    degrees of freedom, or where the mass is negative in some direction, which is refused later.
+    degrees of freedom, or where the mass, or the stiffness of a direction without mass, is
+    negative, which is refused later.
 
     mass, stiffness (dof, dof): symmetric.
     named: the dofs at which forces act or supports stand.
@@ -79,9 +80,14 @@ def condense_massless(
     if not null.shape[1] or not kept.shape[1]:
         return None
     soft = null.T @ (stiffness @ null)
+    if np.diag(soft).min() < 0.0:
+        return None
     size = np.sqrt(np.maximum(np.diag(soft), np.finfo(float).tiny))
     values, vectors = linalg.eigh(soft / size / size[:, None])
-    stiff = values > len(soft) * EPSILON * values[-1]
+    round_off = len(soft) * EPSILON * np.abs(values).max()
+    if values[0] < -round_off:
+        return None
+    stiff = values > round_off
     flexible = null @ (vectors[:, stiff] / np.sqrt(values[stiff]) / size[:, None])
     follow = kept - flexible @ (flexible.T @ (stiffness @ kept))
     own_mass, own_stiffness = kept.T @ (mass @ kept), follow.T @ (stiffness @ follow)
@@ -90,11 +96,13 @@ def condense_massless(
     last = len(own_mass) - 1
     square = linalg.eigh(own_stiffness, own_mass, eigvals_only=True, subset_by_index=[last, last])
     beside = np.eye(static.shape[1])
+    scale = float(stiffness.diagonal().max() / mass.diagonal().max())
+    highest = float(square[0]) if square[0] > EPSILON * scale else scale
     return Condensed(
         np.hstack([follow, static]),
         np.hstack([kept, np.zeros_like(static)]),
         null,
-        _symmetric(own_mass, beside / square[0]),
+        _symmetric(own_mass, beside / highest),
         _symmetric(own_stiffness, beside),
     )
 
