@@ -153,7 +153,8 @@ def test_a_campaign_is_described(run, campaign):
     code, output, _ = run("check", campaign)
     assert (code, output) == (
         0,
-        f"{campaign}: a campaign of 2 records, 1 channel and 1 force channel\n",
+        f"{campaign}: a campaign of 2 records, 1 channel and 1 force channel,"
+        " up to 64 s at 256 Hz\n",
     )
 
 

@@ -8,13 +8,13 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.campaign.file import Level, campaign_dataset, contract_problems, load_of
+from vibroimpact.signal_files.signals import ImportProblem
 from vibroimpact.units import si_factor, si_unit
 
 from .cuts import Cut, cut_records
 from .raw_files import raw_files, read_signals
 from .sensors import Measured, ResolvedSensor, one_rate, read_voltage, resolve_sensors
 from .sidecar import NAME, Drive, Record, Sensor, Sidecar, read_sidecar
-from .signals import ImportProblem
 
 
 def import_folder(folder: str | Path) -> tuple[xr.Dataset, list[dict]]:

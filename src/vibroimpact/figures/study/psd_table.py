@@ -125,11 +125,9 @@ def unit_force_psd(config, frequency):
     if excitation.kind == "band_limited":
         low, high = excitation.band_Hz
         return np.where((frequency >= low) & (frequency <= high), 1.0 / (high - low), 0.0)
-    values, rate = read_force(
-        excitation.file, excitation.variable, excitation.sampling_frequency_Hz
-    )
-    measured = segment_spectra(values, rate, config.spectra)
-    mean = psd_statistics(measured.values)[0][0] / np.mean(np.square(values))
+    force = read_force(excitation.file, excitation.variable, excitation.sampling_frequency_Hz)
+    measured = segment_spectra(force.values, force.rate, config.spectra)
+    mean = psd_statistics(measured.values)[0][0] / np.mean(np.square(force.values))
     return np.interp(frequency, measured.frequency, mean, left=0.0, right=0.0)
 
 
