@@ -329,7 +329,7 @@ TUBE_CHECKS: tuple[Callable[..., Problems], ...] = (
     geometry_checks.points_on_the_tube,
     geometry_checks.supports_on_the_tube,
     geometry_checks.gaps,
-    geometry_checks.offsets,
+    geometry_checks.offsets_on_a_tube,
     names.sensors_of_a_tube,
     turbulence_checks.stretches,
     turbulence_checks.direction,
@@ -341,6 +341,7 @@ TUBE_CHECKS: tuple[Callable[..., Problems], ...] = (
 )
 POINT_CHECKS: tuple[Callable[..., Problems], ...] = (
     names.point_supports,
+    names.same_stop_twice,
     names.places_of_points,
     turbulence_checks.needs_a_tube,
     flow_checks.acts_along_a_tube,
@@ -350,6 +351,7 @@ CHECKS: tuple[Callable[..., Problems], ...] = (
     *POINT_CHECKS,
     names.chain_names,
     geometry_checks.support_lists,
+    geometry_checks.offsets,
     profile_checks.gaps_of_supports,
     profile_checks.preloads,
     profile_checks.profile_normals,

@@ -197,6 +197,20 @@ def point_supports(structure: Structure, supports: Sequence[Support]) -> Problem
             )
 
 
+def same_stop_twice(structure: Structure, supports: Sequence[Support]) -> Problems:
+    """Yield a problem unless supports at one point of a structure differ."""
+    known: list[Support] = []
+    for index, support in enumerate(supports):
+        for other in known:
+            if support.model_copy(update={"name": other.name}) == other:
+                yield (
+                    f"supports[{index}]",
+                    support.name,
+                    f"is '{other.name}' again: leave it out, or add up the stiffness of the two",
+                )
+        known.append(support)
+
+
 def places_of_points(structure: Structure, points: Mapping[str, Sequence[float]]) -> Problems:
     """Yield a problem unless places are those of points that a structure, which is no tube, has."""
     names = names_of_points(structure, points)
@@ -217,6 +231,9 @@ def chain_names(structure: Structure) -> Problems:
     for name, times in Counter(names).items():
         if times > 1:
             yield "structure.masses", name, f"names {times} masses: give each a name of its own"
+    if "ground" in names:
+        place = f"structure.masses[{names.index('ground')}].name"
+        yield place, "ground", "is what springs name the earth: give the mass another name"
     for index, spring in enumerate(structure.springs):
         if len(set(spring.between)) == 1:
             yield (
