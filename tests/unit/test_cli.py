@@ -1,6 +1,7 @@
 """The command line: what is printed, and the exit code."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -218,3 +219,16 @@ def test_a_load_or_gap_that_is_no_quantity_is_refused(argument, value, capsys):
 def test_a_path_that_is_too_long_is_refused(command, capsys):
     assert main([*command, "a" * 5000]) == 1
     assert "a" * 5000 in capsys.readouterr().err
+
+
+def test_a_home_that_can_not_be_written_gets_a_cache_here(tmp_path, monkeypatch):
+    (tmp_path / "home").write_text("a file, no folder")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    monkeypatch.setenv("XDG_CACHE_HOME", "")
+    require_yaml([])
+    assert os.environ["XDG_CACHE_HOME"] == str(tmp_path / ".snakemake" / "cache")
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("XDG_CACHE_HOME", "")
+    require_yaml([])
+    assert os.environ["XDG_CACHE_HOME"] == ""

@@ -607,6 +607,13 @@ def test_a_place_that_a_tube_passes_twice_is_refused(other_kinds):
     assert told[0].startswith("config/mine.yaml: points.drive = [1.0, 0.0, 0.0]")
 
 
+def test_a_tube_of_other_units_is_blamed_on_its_length(study, other_kinds):
+    put(study, "structure.leg_length_m", 800.0)
+    assert any("structure.leg_length_m = '1600.94 m' makes the tube" in p for p in problems(study))
+    put(other_kinds, "structure.segments.0.length_m", 800.0)
+    assert any("structure.segments = '800.814 m'" in each for each in problems(other_kinds))
+
+
 def test_a_mass_named_ground_and_a_stop_twice_are_refused():
     chain = yaml.safe_load((ROOT / "config/examples/mass_between_stops.yaml").read_text())
     chain["supports"].append(chain["supports"][0] | {"name": "again"})

@@ -326,6 +326,7 @@ TUBE_CHECKS: tuple[Callable[..., Problems], ...] = (
     section_checks.enclosed_area,
     section_checks.fluids,
     geometry_checks.path_directions,
+    geometry_checks.slender,
     geometry_checks.points_on_the_tube,
     geometry_checks.supports_on_the_tube,
     geometry_checks.gaps,

@@ -29,6 +29,7 @@ Tube = UTube | Path
 TOLERANCE = 1e-9
 APART_M = 4.0 * LOCATION_TOLERANCE_M  # along the tube: two places, not one seen from a bend
 RADIAL = "give the radial clearance in metres"
+MOST_SLENDER = 1e4
 MOST_OFFSET = 10.0  # gaps that a centre may be off: the structure then presses at rest
 
 
@@ -53,6 +54,21 @@ def path_directions(structure: Tube) -> Problems:
             return
         angle = math.radians(segment.angle_deg)
         tangent = math.cos(angle) * tangent + math.sin(angle) * toward / np.linalg.norm(toward)
+
+
+def slender(structure: Tube) -> Problems:
+    """Yield a problem unless a tube is shorter than MOST_SLENDER of its widths."""
+    centreline = centreline_of(structure)
+    width = outer_width(structure.section)
+    if centreline is None or centreline.length <= MOST_SLENDER * width:
+        return
+    key = "leg_length_m" if structure.kind == "u_tube" else "segments"
+    yield (
+        f"structure.{key}",
+        f"{centreline.length:g} m",
+        f"makes the tube {centreline.length / width:.3g} times as long as it is wide, {width:g} m"
+        f" (at most {MOST_SLENDER:g}): lengths and section both in metres?",
+    )
 
 
 def centreline_of(structure: Tube) -> Centreline | None:
