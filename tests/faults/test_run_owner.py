@@ -156,7 +156,7 @@ def test_a_process_that_has_ended_unasked_is_not_alive():
     assert process_lives(os.getpid())
 
 
-def test_a_file_dated_in_the_future_is_named_with_the_remedy(tmp_path):
+def test_a_file_dated_in_the_future_is_named_with_the_remedy(tmp_path, reliability):
     now, ahead = tmp_path / "now.nc", tmp_path / "ahead file.nc"
     now.write_text("")
     ahead.write_text("")
@@ -165,3 +165,7 @@ def test_a_file_dated_in_the_future_is_named_with_the_remedy(tmp_path):
     with pytest.raises(RecordError, match="ahead file.nc is dated 2 hours in the future.*touch '"):
         require_past([now, ahead])
     assert now.exists() and ahead.exists()
+    reliability.fault(
+        "a file dated in the future, as by another clock",
+        "refused before any job, with the remedy; nothing is deleted",
+    )

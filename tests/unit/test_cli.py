@@ -221,7 +221,7 @@ def test_a_path_that_is_too_long_is_refused(command, capsys):
     assert "a" * 5000 in capsys.readouterr().err
 
 
-def test_a_home_that_can_not_be_written_gets_a_cache_here(tmp_path, monkeypatch):
+def test_a_home_that_can_not_be_written_gets_a_cache_here(tmp_path, monkeypatch, reliability):
     (tmp_path / "home").write_text("a file, no folder")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
@@ -232,3 +232,6 @@ def test_a_home_that_can_not_be_written_gets_a_cache_here(tmp_path, monkeypatch)
     monkeypatch.setenv("XDG_CACHE_HOME", "")
     require_yaml([])
     assert os.environ["XDG_CACHE_HOME"] == ""
+    reliability.fault(
+        "a HOME that can not be written", "Snakemake keeps its cache in the working folder"
+    )

@@ -47,7 +47,7 @@ def test_a_case_of_the_grid_is_the_table_itself(study):
 
 
 @pytest.mark.parametrize("table", ["equivalent.csv", "consistency_summary.csv"])
-def test_tables_of_another_configuration_are_refused(study, study_config, table):
+def test_tables_of_another_configuration_are_refused(study, study_config, table, reliability):
     values = study_config.model_dump(mode="json")
     if table == "equivalent.csv":
         write_table(equivalent_rows(summary_rows_of(study, "y")), study / table)
@@ -59,6 +59,10 @@ def test_tables_of_another_configuration_are_refused(study, study_config, table)
     write_run_files(study, values, ["snakemake"])
     with pytest.raises(EquivalentError, match=rf"{table}: is of another configuration than .*yaml"):
         equivalent(study, 4.0, 1.0e-4)
+    reliability.fault(
+        "a run of a changed configuration is killed, and the old tables stand",
+        "`vibroimpact equivalent` refuses them",
+    )
     values["spectra"]["overlap"], values["overlay"]["noise"] = 0.65, 0.3  # of a figure alone
     write_run_files(study, values, ["snakemake"])
     assert equivalent(study, 4.0, 1.0e-4).groups[0].k.resolved
