@@ -35,8 +35,8 @@ A number that a configuration states acts, or is refused: a test moves each numb
 demands another model, force or setting of a stage. The exceptions are the section `flow`, which
 `vibroimpact stability` alone reads; `record.stress_limit_Pa`, which changes a flag; the rows of
 matrices in files; and the sampling frequency of a force, which must be that of its file. The
-stiffness of a support with a Hertzian contact acts on its friction alone, and `grid.gap_m` names the
-case where every support has a gap of its own.
+stiffness of a support with a Hertzian contact acts on its friction alone, and `grid.gap_m` names
+the case where every support has a gap of its own.
 
 Records of a campaign are held to each other without a model. What no comparison can show: a swap of
 two sensors with like gains, the polarity of a sensor across the force that does not follow it, and
