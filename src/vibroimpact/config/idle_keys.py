@@ -97,7 +97,7 @@ def _apart(element: Any, partner: Any) -> str:
 
 
 def _of_structure(config: Config) -> Iterator[str]:
-    structure = config.structure
+    structure: Any = config.structure  # the kinds have other keys
     bends = structure.kind == "u_tube" or any(
         segment.kind == "bend" for segment in getattr(structure, "segments", ())
     )

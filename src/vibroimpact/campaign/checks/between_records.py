@@ -70,15 +70,15 @@ def copies(measured: CampaignSignals) -> Found:
                     f"{measured.channels[other]} and {measured.channels[one]} hold the same samples"
                     f" in record {measured.records[record]}: one of them was stored twice.",
                 )
-    for one, other in combinations(range(len(measured.records)), 2):
-        pairs = [(each[one], each[other]) for each in (measured.force, measured.response)]
+    for first, second in combinations(range(len(measured.records)), 2):
+        pairs = [(each[first], each[second]) for each in (measured.force, measured.response)]
         size = min(pairs[0][0].shape[-1], pairs[0][1].shape[-1])
         if all(np.array_equal(a[:, :size], b[:, :size], equal_nan=True) for a, b in pairs):
             yield (
-                other,
+                second,
                 None,
-                f"Record {measured.records[other]} holds the samples of record"
-                f" {measured.records[one]}: one of them was stored twice.",
+                f"Record {measured.records[second]} holds the samples of record"
+                f" {measured.records[first]}: one of them was stored twice.",
             )
 
 
