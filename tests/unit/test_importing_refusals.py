@@ -304,5 +304,6 @@ def test_a_wanted_file_that_is_no_file_is_called_so(tmp_path):
         "pipe.csv": "is no ordinary file (a pipe or a device)",
         "notes.doc": "ends in '.doc', a kind of file that is not read",
         "gone.csv": "is not in the folder",
+        "../x.csv": "is outside the folder: put a copy into it, only its own files are read",
     }
     assert {name: absence(tmp_path / name) for name in said} == said
