@@ -30,6 +30,17 @@ Every row is stated by a test that passed. `make reliability` runs these tests a
 A profile of Snakemake is a program, and so is a configuration with `__use_yte__` where the default
 profile is switched off (`--workflow-profile none`): Snakemake runs it before this package reads it.
 Run `vibroimpact check FILE` on a file of others first; it runs nothing.
+
+A number that a configuration states acts, or is refused: a test moves each number of the schema and
+demands another model, force or setting of a stage. The exceptions are the section `flow`, which
+`vibroimpact stability` alone reads; `record.stress_limit_Pa`, which changes a flag; the rows of
+matrices in files; and the sampling frequency of a force, which must be that of its file. The
+stiffness of a support with a Hertzian contact acts on its friction alone, and `grid.gap_m` names
+the case where every support has a gap of its own.
+
+Records of a campaign are held to each other without a model. What no comparison can show: a swap of
+two sensors with like gains, the polarity of a sensor across the force that does not follow it, and
+a factor below 4 of a record or below 5 of a channel.
 """
 
 

@@ -33,6 +33,7 @@ PACKAGES = (
     "run_cost",
     "foreign_arrays",
     "matlab_files",
+    "signal_files",
     "materials",
     "geometry",
     "config",

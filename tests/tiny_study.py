@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import yaml
 
 from vibroimpact.config.reading import check_config
-from vibroimpact.config.stage_keys import stage_params
+from vibroimpact.config.stage_keys import answer_digest, stage_params
 from vibroimpact.study.cases import all_cases, load_values, nearest_loads, value_text
 
 ROOT = Path(__file__).parents[1]
@@ -107,7 +107,8 @@ class TinyStudy:
         outputs = {name: self.path(f"consistency_{name}.csv") for name in names}
         outputs |= {"table": table, "dataset": self.path("consistency.nc")}
         outputs["equivalent"] = self.path("equivalent.csv")
-        self.run("consistency", {"model": model, "tables": tables}, outputs)
+        digest = answer_digest(self.config.model_dump(mode="json"))
+        self.run("consistency", {"model": model, "tables": tables}, outputs, digest=digest)
         self.run(
             "synthetic_campaign",
             {"model": model},

@@ -49,8 +49,9 @@ def require_yaml(arguments: Sequence[str]) -> None:
 
     arguments: those of snakemake, whose --configfile names the files; without it, the file that the
     Snakefile names. Snakemake parses these files before it reads the Snakefile, and its own message
-    says neither file nor line. Raises SystemExit.
+    says neither file nor line. Snakemake also gets a folder for its cache. Raises SystemExit.
     """
+    _give_cache()
     from vibroimpact.config.problems import ConfigError
     from vibroimpact.config.yaml_file import read_yaml
 
@@ -65,6 +66,18 @@ def require_yaml(arguments: Sequence[str]) -> None:
             problems += error.problems
     if problems:
         sys.exit("\n".join(problems))
+
+
+def _give_cache() -> None:
+    """Let Snakemake keep its cache in the working folder where HOME can not be written."""
+    cache = Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"), "snakemake")
+    try:
+        cache.mkdir(parents=True, exist_ok=True)
+        writable = os.access(cache, os.W_OK)
+    except OSError:
+        writable = False
+    if not writable:
+        os.environ["XDG_CACHE_HOME"] = os.path.abspath(".snakemake/cache")
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -184,7 +197,6 @@ def _compare(options: argparse.Namespace) -> int:
     """Hold frequency responses to a linear model. Return 1 where it can not be done."""
     from vibroimpact.campaign.file import CampaignError, read_campaign
     from vibroimpact.campaign.importing.frf import read_frfs
-    from vibroimpact.campaign.importing.signals import ImportProblem
     from vibroimpact.config.problems import ConfigError
     from vibroimpact.config.reading import load_config
     from vibroimpact.diagnosis.measurement.comparable import comparison_problems
@@ -196,6 +208,7 @@ def _compare(options: argparse.Namespace) -> int:
         linear_comparison,
         lowest_responses,
     )
+    from vibroimpact.signal_files.signals import ImportProblem
 
     try:
         config = load_config(options.model)
@@ -283,7 +296,7 @@ def _campaign(path: str) -> tuple[str | None, list[str]]:
     return (
         f"a campaign of {_count(sizes['record'], 'record')},"
         f" {_count(sizes['channel'], 'channel')} and"
-        f" {_count(sizes['force_channel'], 'force channel')}",
+        f" {_count(sizes['force_channel'], 'force channel')}, {_sampling(campaign)}",
         problems,
     )
 
@@ -311,6 +324,7 @@ def _study(data: dict, path: str) -> tuple[str | None, list[str]]:
     from vibroimpact.config.problems import ConfigError
     from vibroimpact.config.reading import check_config
     from vibroimpact.study.cases import all_cases
+    from vibroimpact.study.model_checks import check_model
 
     told: list[str] = []
     try:
@@ -319,7 +333,9 @@ def _study(data: dict, path: str) -> tuple[str | None, list[str]]:
         if error.mended is None:
             raise
         config, told = error.mended, error.problems
-    problems, warnings = _problems_of_model(config)
+    found = check_model(config)
+    files, wrong = _measured_files(config)
+    problems = [*found.problems, *wrong]
     if told or problems:
         return None, [*told, *(f"{path}: {problem}" for problem in problems)]
     aim = "with identification" if config.identification is not None else "without identification"
@@ -327,8 +343,8 @@ def _study(data: dict, path: str) -> tuple[str | None, list[str]]:
         f"study '{config.study}': structure of kind {config.structure.kind}{_named(config)},"
         f" {_count(len(config.supports), 'support')}, {_count(len(config.elements), 'element')},"
         f" excitation of kind {config.excitation.kind},"
-        f" {_count(len(all_cases(config.grid)), 'case')} {aim}{_load_of_spectrum(config)}",
-        [f"{path}: warning: {warning}" for warning in warnings],
+        f" {_count(len(all_cases(config.grid)), 'case')} {aim}{_load_of_spectrum(config)}{files}",
+        [f"{path}: warning: {warning}" for warning in found.warnings],
     )
 
 
@@ -366,35 +382,41 @@ def _named(config) -> str:
     return words
 
 
-def _problems_of_model(config) -> tuple[list[str], list[str]]:
-    """Return (problems of the model and of the measured files of a study, warnings)."""
-    from vibroimpact.study.model_checks import check_model
+def _sampling(campaign) -> str:
+    """Return the duration and rate of a campaign in words."""
+    rate = float(campaign.attrs["sampling_frequency"])
+    return f"up to {campaign.sizes['time'] / rate:.6g} s at {rate:.6g} Hz"
 
-    found = check_model(config)
-    problems = list(found.problems)
-    if config.excitation.kind == "measured":
-        from vibroimpact.excitation.force_files import ForceFileError, read_force
 
-        force = config.excitation
+def _measured_files(config) -> tuple[str, list[str]]:
+    """Return ("; FILE: duration and rate" of each measured file of a study, their problems)."""
+    from vibroimpact.campaign.file import CampaignError, checked_description
+    from vibroimpact.excitation.force_files import ForceFileError, read_force, require_lasting
+    from vibroimpact.records import RecordError
+
+    told, problems = "", []
+    force, record, step = config.excitation, config.record, config.integration
+    if force.kind == "measured":
+        needed = step.start_up_s + record.duration_s
         try:
-            read_force(force.file, force.variable, force.sampling_frequency_Hz)
+            read = read_force(force.file, force.variable, force.sampling_frequency_Hz)
+            require_lasting(force.file, read, step.steps_per_second, step.start_up_s, needed)
+            told += f"; {force.file}: {read.described()}"
         except ForceFileError as error:
             problems.append(str(error))
-    if config.overlay.campaign is not None:
-        from vibroimpact.campaign.file import CampaignError, checked_description
-        from vibroimpact.records import RecordError
-
+    overlaid = config.overlay.campaign
+    if overlaid is not None:
         try:
-            checked_description(config.overlay.campaign)
+            told += f"; {overlaid}: {_sampling(checked_description(overlaid))}"
         except (CampaignError, RecordError) as error:
             problems += [f"overlay.campaign: {line}" for line in str(error).splitlines()]
-    return problems, list(found.warnings)
+    return told, problems
 
 
 def _sidecar(path: str) -> tuple[str | None, list[str]]:
     """Return (what the campaign.yaml of a folder of measurements is, its problems)."""
     from vibroimpact.campaign.importing.sidecar import read_sidecar
-    from vibroimpact.campaign.importing.signals import ImportProblem
+    from vibroimpact.signal_files.signals import ImportProblem
 
     try:
         sidecar = read_sidecar(path)

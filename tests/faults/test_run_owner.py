@@ -5,16 +5,25 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
 
 from tests.tiny_study import ROOT
-from vibroimpact.study.run_owner import BOOT, FolderTaken, Owner, start_text, take_folder
-from vibroimpact.whole_file import HOST, process_lives, remove_left_over, whole_file
+from vibroimpact.study.run_owner import (
+    BOOT,
+    FolderTaken,
+    Owner,
+    require_past,
+    start_text,
+    take_folder,
+)
+from vibroimpact.whole_file import HOST, RecordError, process_lives, remove_left_over, whole_file
 
 PROGRAM = """
 import sys
+import time
 from pathlib import Path
 from vibroimpact.study.run_owner import take_folder
 killed = take_folder(sys.argv[1], ["/bin/snakemake", "-j1", "all"])
@@ -145,3 +154,18 @@ def test_a_process_that_has_ended_unasked_is_not_alive():
     assert not process_lives(child.pid)
     child.wait()
     assert process_lives(os.getpid())
+
+
+def test_a_file_dated_in_the_future_is_named_with_the_remedy(tmp_path, reliability):
+    now, ahead = tmp_path / "now.nc", tmp_path / "ahead file.nc"
+    now.write_text("")
+    ahead.write_text("")
+    require_past([now, ahead, tmp_path / "not there yet"])
+    os.utime(ahead, (time.time() + 7200.0,) * 2)
+    with pytest.raises(RecordError, match="ahead file.nc is dated 2 hours in the future.*touch '"):
+        require_past([now, ahead])
+    assert now.exists() and ahead.exists()
+    reliability.fault(
+        "a file dated in the future, as by another clock",
+        "refused before any job, with the remedy; nothing is deleted",
+    )

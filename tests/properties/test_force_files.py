@@ -54,7 +54,7 @@ def test_damaged_force_files_are_refused_or_right(ending, reliability, tmp_path)
                 )
             )
         if outcome[0] == "right":
-            values, rate = outcome[1]
+            values, rate = outcome[1].values, outcome[1].rate
             assert values.ndim == 1 and np.all(np.isfinite(values)) and np.any(values)
             assert np.isfinite(rate) and rate > 0
 

@@ -1,6 +1,7 @@
 """The command line: what is printed, and the exit code."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -153,7 +154,8 @@ def test_a_campaign_is_described(run, campaign):
     code, output, _ = run("check", campaign)
     assert (code, output) == (
         0,
-        f"{campaign}: a campaign of 2 records, 1 channel and 1 force channel\n",
+        f"{campaign}: a campaign of 2 records, 1 channel and 1 force channel,"
+        " up to 64 s at 256 Hz\n",
     )
 
 
@@ -217,3 +219,19 @@ def test_a_load_or_gap_that_is_no_quantity_is_refused(argument, value, capsys):
 def test_a_path_that_is_too_long_is_refused(command, capsys):
     assert main([*command, "a" * 5000]) == 1
     assert "a" * 5000 in capsys.readouterr().err
+
+
+def test_a_home_that_can_not_be_written_gets_a_cache_here(tmp_path, monkeypatch, reliability):
+    (tmp_path / "home").write_text("a file, no folder")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    monkeypatch.setenv("XDG_CACHE_HOME", "")
+    require_yaml([])
+    assert os.environ["XDG_CACHE_HOME"] == str(tmp_path / ".snakemake" / "cache")
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("XDG_CACHE_HOME", "")
+    require_yaml([])
+    assert os.environ["XDG_CACHE_HOME"] == ""
+    reliability.fault(
+        "a HOME that can not be written", "Snakemake keeps its cache in the working folder"
+    )

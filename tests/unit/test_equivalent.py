@@ -14,10 +14,16 @@ from tests.study_tables import (
     summary_rows,
 )
 from vibroimpact import EquivalentError, equivalent
+from vibroimpact.config.stage_keys import answer_digest
 from vibroimpact.equivalent_support.answer import NOT_MOVED
 from vibroimpact.equivalent_support.answer_text import as_csv, as_plain, as_text
-from vibroimpact.equivalent_support.study_tables import recommended_rows_of, summary_rows_of
-from vibroimpact.records import write_table
+from vibroimpact.equivalent_support.study_tables import (
+    recommended_rows_of,
+    summary_rows_of,
+)
+from vibroimpact.records import read_table, write_table
+from vibroimpact.study.equivalent_table import equivalent_rows
+from vibroimpact.study.run_files import write_run_files
 
 
 @pytest.fixture
@@ -38,6 +44,28 @@ def test_a_case_of_the_grid_is_the_table_itself(study):
     assert group.how == "a case of the study: 4 N RMS at 0.1 mm"
     assert group.secant_k == pytest.approx(0.9 * k_law(4.0e4))
     assert {item.method for item in group.methods} == set(FACTORS)
+
+
+@pytest.mark.parametrize("table", ["equivalent.csv", "consistency_summary.csv"])
+def test_tables_of_another_configuration_are_refused(study, study_config, table, reliability):
+    values = study_config.model_dump(mode="json")
+    if table == "equivalent.csv":
+        write_table(equivalent_rows(summary_rows_of(study, "y")), study / table)
+    own = {"config_digest": answer_digest(values)}
+    write_table([row | own for row in read_table(study / table)], study / table)
+    write_run_files(study, values, ["snakemake"])
+    assert equivalent(study, 4.0, 1.0e-4).groups[0].k.resolved
+    values["spectra"]["overlap"] = 0.5  # another run has begun and was killed
+    write_run_files(study, values, ["snakemake"])
+    with pytest.raises(EquivalentError, match=rf"{table}: is of another configuration than .*yaml"):
+        equivalent(study, 4.0, 1.0e-4)
+    reliability.fault(
+        "a run of a changed configuration is killed, and the old tables stand",
+        "`vibroimpact equivalent` refuses them",
+    )
+    values["spectra"]["overlap"], values["overlay"]["noise"] = 0.65, 0.3  # of a figure alone
+    write_run_files(study, values, ["snakemake"])
+    assert equivalent(study, 4.0, 1.0e-4).groups[0].k.resolved
 
 
 def test_a_power_law_is_interpolated_exactly_at_any_gap(study):

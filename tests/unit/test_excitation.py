@@ -10,7 +10,12 @@ import pytest
 import xarray as xr
 from scipy.io import savemat
 
-from vibroimpact.excitation.force_files import ForceFileError, read_force
+from vibroimpact.excitation.force_files import (
+    ForceFileError,
+    MeasuredForce,
+    read_force,
+    require_lasting,
+)
 from vibroimpact.excitation.force_stream import ForceStream, normalised_force
 from vibroimpact.excitation.random_force import (
     ForceError,
@@ -177,9 +182,9 @@ def measured_files(folder, values, rate):
 def test_the_three_kinds_of_file_hold_the_same_record(tmp_path):
     values = np.random.default_rng(4).standard_normal(500)
     for path in measured_files(tmp_path, values, 400.0):
-        read, rate = read_force(path, "force", None)
-        assert np.array_equal(read, values)
-        assert rate == pytest.approx(400.0, rel=1e-9)
+        read = read_force(path, "force", None)
+        assert np.array_equal(read.values, values)
+        assert read.rate == 400.0
 
 
 def test_a_measured_force_drives_a_case(tmp_path):
@@ -191,14 +196,67 @@ def test_a_measured_force_drives_a_case(tmp_path):
     force = normalised_force(section, None, 5 * 51200, 51200.0, slice(51200, 4 * 51200))
     assert np.sqrt(np.mean(force[51200 : 4 * 51200] ** 2)) == pytest.approx(1.0, rel=1e-14)
     assert np.corrcoef(force[::128], values[:2000])[0, 1] > 0.999
-    with pytest.raises(ForceError, match="lasts 10.000 s, but start-up and record need 12.000 s"):
+    with pytest.raises(
+        ForceFileError, match="lasts 10.000 s, but start-up and record need 12.000 s"
+    ):
         normalised_force(section, None, 12 * 51200, 51200.0, slice(0, 51200))
+
+
+def timed_forces(folder, unit, per_second, stated=None):
+    """Files of 10 s of a force at 400 Hz, whose times are in a unit; stated: attribute in Hz."""
+    values = np.random.default_rng(6).standard_normal(4000)
+    time = np.arange(4000) / 400.0 * per_second
+    table, netcdf = folder / "force.csv", folder / "force.nc"
+    header = f"time [{unit}],force" if unit else "time,force"
+    np.savetxt(table, np.column_stack([time, values]), delimiter=",", header=header, comments="")
+    units = {"units": unit} if unit else {}
+    rate = {"sampling_frequency": stated} if stated else {}
+    force = xr.Dataset({"force": ("time", values, rate)}, {"time": ("time", time, units)})
+    force.assign_attrs(rate).to_netcdf(netcdf, engine="netcdf4")
+    return table, netcdf
+
+
+@pytest.mark.parametrize(("unit", "per_second"), [("s", 1.0), ("ms", 1e3), ("us", 1e6)])
+def test_the_unit_of_the_times_of_a_force_counts(tmp_path, unit, per_second):
+    for path in timed_forces(tmp_path, unit, per_second):
+        read = read_force(path, "force", None)
+        assert read.rate == 400.0
+        assert read.described() == "10 s at 400 Hz"
+
+
+def test_an_unknown_unit_of_time_is_refused(tmp_path):
+    for path in timed_forces(tmp_path, "kg", 1.0):
+        with pytest.raises(ForceFileError, match="has the unit 'kg', which is no time"):
+            read_force(path, "force", None)
+
+
+def test_times_that_contradict_the_stated_rate_are_refused(tmp_path):
+    path = timed_forces(tmp_path, "s", 1.0, stated=200.0)[1]
+    with pytest.raises(ForceFileError, match="frequency is 200 Hz, but the steps of time say 400"):
+        read_force(path, "force", None)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"rate": 0.4}, "are its times in ms"),
+        ({"stop": 3000}, "lasts 7.500 s, but start-up and record need 8.000 s"),
+        ({"still_from": 500}, "the force ends within the start-up of 2 s"),
+    ],
+)
+def test_a_force_that_is_none_of_a_case_is_refused(change, said):
+    values = np.random.default_rng(7).standard_normal(4000)
+    values[change.get("still_from", 4000) :] *= 1e-6
+    force = MeasuredForce(values[: change.get("stop", 4000)], change.get("rate", 400.0))
+    require_lasting("f.csv", MeasuredForce(values + 1.0, 400.0), 51200.0, 2.0, 8.0)
+    with pytest.raises(ForceFileError, match=said):
+        require_lasting("f.csv", force, 51200.0, 2.0, 8.0)
 
 
 def test_errors_in_a_force_file_are_reported(tmp_path):
     values = np.ones(100)
     netcdf, table, _ = measured_files(tmp_path, values, 400.0)
-    with pytest.raises(ForceFileError, match="no variable 'Force': it has force, time"):
+    with pytest.raises(ForceFileError, match="no variable 'Force': it has force"):
         read_force(netcdf, "Force", None)
     with pytest.raises(
         ForceFileError, match="sampled at 400 Hz, but excitation.sampling_frequency_Hz = 500"

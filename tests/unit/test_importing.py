@@ -18,9 +18,9 @@ from vibroimpact.campaign.file import channel_signal, force_signal, read_campaig
 from vibroimpact.campaign.importing.assemble import import_folder
 from vibroimpact.campaign.importing.draft import checked_folder
 from vibroimpact.campaign.importing.report import import_text
-from vibroimpact.campaign.importing.signals import ImportProblem, even_samples
 from vibroimpact.campaign.importing.uff import read_uff
 from vibroimpact.records import write_record
+from vibroimpact.signal_files.signals import ImportProblem, even_samples
 
 # pyuff leaves the file that it writes a binary set to unclosed; nothing here writes universal files
 # but this test.

@@ -1,5 +1,6 @@
 """What an import refuses, and what it reads although the file does not say it plainly."""
 
+import os
 from pathlib import Path
 
 import h5py
@@ -11,11 +12,12 @@ from scipy import sparse
 
 from vibroimpact.campaign.file import channel_signal
 from vibroimpact.campaign.importing.assemble import import_folder
-from vibroimpact.campaign.importing.matlab import read_matlab
-from vibroimpact.campaign.importing.signals import ImportProblem
+from vibroimpact.campaign.importing.raw_files import absence
 from vibroimpact.foreign_arrays import ForeignFileError
 from vibroimpact.matlab_files import load_matlab
 from vibroimpact.records import RecordError, read_hdf5_arrays
+from vibroimpact.signal_files.matlab import read_matlab
+from vibroimpact.signal_files.signals import ImportProblem
 
 RATE, SAMPLES = 512, 512
 HEADER = "time,F [N],tip [µm/s²]"
@@ -281,3 +283,27 @@ def test_files_of_matlab_are_read_as_scipy_reads_them(file, names):
             for values in (found[name], expected[name])
         ]
         np.testing.assert_array_equal(*pair)
+
+
+def test_the_reason_why_a_signal_is_not_read_is_told(tmp_path):
+    content = {"Fs": 400.0, "F": np.ones(100) * 1j, "short": np.ones(50), "tip": np.ones(100)}
+    scipy.io.savemat(tmp_path / "low.mat", content)
+    [signal] = read_matlab(tmp_path / "low.mat")
+    assert signal.left_out == {
+        "F": "holds no real numbers",
+        "short": "has 50 samples, the longest signal 100",
+    }
+
+
+def test_a_wanted_file_that_is_no_file_is_called_so(tmp_path):
+    (tmp_path / "folder.csv").mkdir()
+    os.mkfifo(tmp_path / "pipe.csv")
+    (tmp_path / "notes.doc").write_text("notes")
+    said = {
+        "folder.csv": "is a folder, not a file",
+        "pipe.csv": "is no ordinary file (a pipe or a device)",
+        "notes.doc": "ends in '.doc', a kind of file that is not read",
+        "gone.csv": "is not in the folder",
+        "../x.csv": "is outside the folder: put a copy into it, only its own files are read",
+    }
+    assert {name: absence(tmp_path / name) for name in said} == said

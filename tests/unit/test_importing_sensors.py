@@ -8,7 +8,7 @@ from vibroimpact.campaign.checks.file_checks import check_campaign
 from vibroimpact.campaign.file import channel_signal, force_signal
 from vibroimpact.campaign.importing.assemble import import_folder
 from vibroimpact.campaign.importing.report import import_text
-from vibroimpact.campaign.importing.signals import ImportProblem
+from vibroimpact.signal_files.signals import ImportProblem
 
 RATE, SAMPLES, G = 512, 3000, 9.80665
 TABLE = {

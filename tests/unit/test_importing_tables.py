@@ -5,8 +5,8 @@ import pytest
 import yaml
 
 from vibroimpact.campaign.importing.assemble import import_folder
-from vibroimpact.campaign.importing.csv_table import read_csv
-from vibroimpact.campaign.importing.signals import UNREAD, ImportProblem
+from vibroimpact.signal_files.csv_table import read_csv
+from vibroimpact.signal_files.signals import UNREAD, ImportProblem
 
 TABLE = np.array([[0.0, 1.25, -0.5], [0.001, 1.5, 0.75], [0.002, -0.25, 0.5]])
 NAMED = [("force", "N", [1.25, 1.5, -0.25]), ("acc", "m/s^2", [-0.5, 0.75, 0.5])]

@@ -10,8 +10,8 @@ from vibroimpact.campaign.file import channel_signal, force_signal
 from vibroimpact.campaign.importing.assemble import import_folder
 from vibroimpact.campaign.importing.draft import checked_folder
 from vibroimpact.campaign.importing.report import import_text
-from vibroimpact.campaign.importing.signals import ImportProblem
 from vibroimpact.campaign.importing.uff import read_uff
+from vibroimpact.signal_files.signals import ImportProblem
 
 # pyuff leaves a file that it writes to unclosed.
 pytestmark = [
@@ -192,3 +192,12 @@ def test_channels_that_can_not_be_aligned_are_refused(tmp_path, start, told):
     )
     with pytest.raises(ImportProblem, match=rf"1:\+z of run.uff begins at 0 s.*{told}"):
         import_folder(tmp_path)
+
+
+@pytest.mark.parametrize("step", [0.0, -1.0 / RATE])
+def test_a_time_step_that_does_not_advance_is_refused(tmp_path, step):
+    times = {"x": step * np.arange(SAMPLES), "abscissa_inc": step}
+    still = record(np.arange(SAMPLES) * 1.0, 1, FORCE, "drive") | times
+    write(tmp_path, "low.uff", still)
+    with pytest.raises(ImportProblem, match="its time step is .* correct the abscissa increment"):
+        read_uff(tmp_path / "low.uff")

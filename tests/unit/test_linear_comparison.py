@@ -8,10 +8,10 @@ from docs.examples import hammer_test
 from vibroimpact.campaign.file import write_campaign
 from vibroimpact.campaign.importing.assemble import import_folder
 from vibroimpact.campaign.importing.frf import read_frfs
-from vibroimpact.campaign.importing.signals import ImportProblem
 from vibroimpact.cli import main
 from vibroimpact.config.reading import load_config
 from vibroimpact.reports.linear_comparison import described, linear_comparison
+from vibroimpact.signal_files.signals import ImportProblem
 
 pytestmark = [
     pytest.mark.filterwarnings(

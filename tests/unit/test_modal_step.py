@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 from vibroimpact.config import checks as config_checks
 from vibroimpact.integration.kernels.decimation import RATIO
 from vibroimpact.integration.modal_step import step_coefficients
-from vibroimpact.integration.output_filter import LEAST_STAGES
+from vibroimpact.integration.output_filter import LEAST_STAGES, PASS_FRACTION
 
 STEP = 1.0 / 20480
 OMEGA = 2.0 * np.pi * np.array([0.0, 12.0, 300.0, 5000.0, 40.0])
@@ -97,3 +97,4 @@ def test_the_free_step_has_its_determinant_and_distance_from_one(scheme):
 def test_config_checks_use_the_filter_ratio():
     assert config_checks.FILTER_RATIO == RATIO
     assert config_checks.FILTER_STAGES == LEAST_STAGES
+    assert config_checks.FILTER_PASSES == PASS_FRACTION

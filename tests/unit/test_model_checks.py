@@ -187,3 +187,24 @@ def test_what_can_not_be_identified_is_refused(changes, words):
 def test_negative_variances_are_errors_without_end():
     covariance = np.array([[4.0, 0.0, 0.0], [0.0, -1e-9, 0.0], [0.0, 0.0, np.nan]])
     assert np.array_equal(standard_errors(covariance), [2.0, np.inf, np.nan], equal_nan=True)
+
+
+def test_a_remedy_is_one_that_the_key_takes():
+    (problem,) = check_model(
+        check_config(smoke("supports.0.damping_N_s_per_m", 1e20), "mine")
+    ).problems
+    assert "no integration.steps_per_second is enough" in problem and "at least" not in problem
+
+
+def test_supports_that_meet_are_a_model():
+    below = smoke("supports.1.at_m", [-0.3, 0.0, 0.38])
+    assert check_model(check_config(below, "mine")).problems == ()
+
+
+def test_a_force_across_a_chain_with_sensors_is_blamed():
+    sensors = {"sensors": {"points": ["a"], "directions": ["x"]}}
+    force = {"kind": "harmonic", "point": "a", "frequency_Hz": 2.0}
+    across = {"excitation": force | {"direction": [0.0, 1.0, 0.0]}}
+    mine = CHAIN | across | {"record": CHAIN["record"] | sensors}
+    (problem,) = check_model(check_config(mine, "mine")).problems
+    assert problem.startswith("excitation: the force has no effect")

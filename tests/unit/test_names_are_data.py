@@ -8,9 +8,9 @@ from matplotlib.text import Text
 
 from tests.sound_campaign import sound_campaign
 from vibroimpact.campaign.importing.sidecar import read_sidecar
-from vibroimpact.campaign.importing.signals import ImportProblem
 from vibroimpact.figures.discrepancy.quicklook import quicklook
 from vibroimpact.records import read_table, write_table
+from vibroimpact.signal_files.signals import ImportProblem
 
 NAMES = ["=1+2", "+low", "-tip", "@shaker", "'=1", "''+x", "'x", "-", "plain", "-1.5", "\tx", "+ y"]
 

@@ -8,11 +8,11 @@ import pytest
 
 from vibroimpact.campaign.checks.file_checks import NOT_CHECKED, check_campaign, refused
 from vibroimpact.campaign.importing.assemble import import_folder
-from vibroimpact.campaign.importing.csv_table import read_csv
-from vibroimpact.campaign.importing.signals import ImportProblem
 from vibroimpact.config.reading import check_config
 from vibroimpact.config.yaml_file import read_yaml
 from vibroimpact.reduction.reduced_model import build_model
+from vibroimpact.signal_files.csv_table import read_csv
+from vibroimpact.signal_files.signals import ImportProblem
 
 CASES = Path(__file__).parents[2].parent / "shared" / "data" / "public_cases"
 pytestmark = pytest.mark.skipif(

@@ -10,7 +10,7 @@ from vibroimpact.campaign.checks.file_checks import NOT_CHECKED, check_campaign,
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset, force_signal
 from vibroimpact.campaign.importing.assemble import import_folder
 from vibroimpact.campaign.importing.report import checks_text
-from vibroimpact.campaign.importing.signals import ImportProblem
+from vibroimpact.signal_files.signals import ImportProblem
 
 RATE = 512.0
 Y = (0.0, 1.0, 0.0)

@@ -93,7 +93,7 @@ def folder_to_import(folder):
     """
     from vibroimpact.campaign.importing.draft import checked_folder
     from vibroimpact.campaign.importing.raw_files import raw_files
-    from vibroimpact.campaign.importing.signals import ImportProblem
+    from vibroimpact.signal_files.signals import ImportProblem
 
     try:
         if not workflow.is_main_process:

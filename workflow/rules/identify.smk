@@ -51,6 +51,7 @@ rule _consistency:
     params:
         library=library("consistency"),
         config=settings("consistency"),
+        digest=answer_digest(STUDY.model_dump(mode="json")),
     message:
         f"Consistency of the methods over {len(CASES)} cases"
     script:

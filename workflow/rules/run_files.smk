@@ -3,7 +3,7 @@
 from snakemake.logging import logger
 from vibroimpact.records import read_table, read_text
 from vibroimpact.study.run_files import write_run_files
-from vibroimpact.study.run_owner import FolderTaken, start_text, take_folder
+from vibroimpact.study.run_owner import FolderTaken, require_past, start_text, take_folder
 from vibroimpact.study.run_report import failure_text, success_text, warnings_text
 from vibroimpact.whole_file import RecordError, remove_left_over
 
@@ -28,6 +28,7 @@ def begin_run():
     Exits with a sentence where another run is at work in it or it cannot be written.
     """
     try:
+        require_past(str(file) for job in planned_jobs() for file in job.input)
         killed = take_folder(MARK, sys.argv) if workflow.is_main_process else None
         folders = {Path(file).parent for job in planned_jobs() for file in job.output}
         for line in start_text(killed, remove_left_over(folders)):

@@ -2,7 +2,7 @@
 from functools import cache
 
 from snakemake.logging import logger
-from vibroimpact.config.stage_keys import stage_params
+from vibroimpact.config.stage_keys import answer_digest, stage_params
 from vibroimpact.provenance import library_digest
 from vibroimpact.reports.captions import read_caption
 from vibroimpact.study.cases import all_cases, batches, case_from_id

@@ -9,7 +9,7 @@ from vibroimpact.reduction.model_file import read_model
 from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.study.agreement_dataset import consistency_dataset
 from vibroimpact.study.case_files import read_estimates
-from vibroimpact.study.equivalent_table import EQUIVALENT_COLUMNS, equivalent_rows
+from vibroimpact.study.equivalent_table import DIGEST_COLUMN, EQUIVALENT_COLUMNS, equivalent_rows
 from vibroimpact.study.method_agreement import (
     COLLAPSE_COLUMNS,
     collapse_rows,
@@ -22,11 +22,15 @@ config = StageSettings(snakemake.params.config)
 model = read_model(snakemake.input.model)
 rows = consistency_rows(read_estimates(snakemake.input.tables, model, config.identification.groups))
 summary = summary_rows(rows)
-write_table(rows, snakemake.output.table)
-write_table(summary, snakemake.output.summary)
-write_table(collapse_rows(summary), snakemake.output.collapse, COLLAPSE_COLUMNS)
 unreached = unreached_supports(model, config.identification.groups)
-write_table(equivalent_rows(summary, unreached), snakemake.output.equivalent, EQUIVALENT_COLUMNS)
+for name, table, columns in (
+    ("table", rows, ()),
+    ("summary", summary, ()),
+    ("collapse", collapse_rows(summary), COLLAPSE_COLUMNS),
+    ("equivalent", equivalent_rows(summary, unreached), EQUIVALENT_COLUMNS),
+):
+    own = {DIGEST_COLUMN: snakemake.params.digest}
+    write_table([row | own for row in table], getattr(snakemake.output, name), (*columns, *own))
 dataset = consistency_dataset(rows, summary)
 write_record(
     dataset.assign_attrs(file_attributes(snakemake.params.config, snakemake.params.library)),

@@ -31,8 +31,8 @@ from .structure import Structure
 Problems = Iterator[tuple[str, Any, str]]
 
 STEPS_PER_EXCITED_PERIOD = 20
-# kernels.RATIO and output_filter.LEAST_STAGES, which only what integrates may import
-FILTER_RATIO, FILTER_STAGES = 5, 2
+# kernels.RATIO, output_filter.LEAST_STAGES and PASS_FRACTION, which only what integrates may import
+FILTER_RATIO, FILTER_STAGES, FILTER_PASSES = 5, 2, 0.78125
 # In rad. The exact scheme has no error in a mode alone; below pi, a mode is not aliased.
 LARGEST_OMEGA_STEP = {"newmark": 1.0, "exact": 2.8}
 MOST_STEPS_KEPT = 2e6
@@ -159,19 +159,20 @@ def _overlay(overlay: Overlay, grid: Grid) -> Problems:
         )
 
 
-def _bands_below_nyquist(record: RecordKeys, identification: Identification) -> Problems:
-    nyquist = record.sampling_frequency_Hz / 2
+def _bands_pass_the_filter(record: RecordKeys, identification: Identification) -> Problems:
+    passed = FILTER_PASSES * record.sampling_frequency_Hz / 2
     bands = {
         "peak_search_Hz": identification.peak_search_Hz,
         "lscf.band_Hz": identification.lscf.band_Hz,
         "broadband.band_Hz": identification.broadband.band_Hz,
     }
     for key, (low, high) in bands.items():
-        if high > nyquist:
+        if high > passed:
             yield (
                 f"identification.{key}",
                 [low, high],
-                f"reaches above half the sampling frequency, {nyquist:g} Hz: lower it",
+                f"reaches above {passed:g} Hz, which the output filter passes, {FILTER_PASSES:.2f}"
+                " of half record.sampling_frequency_Hz: lower it",
             )
 
 
@@ -325,10 +326,11 @@ TUBE_CHECKS: tuple[Callable[..., Problems], ...] = (
     section_checks.enclosed_area,
     section_checks.fluids,
     geometry_checks.path_directions,
+    geometry_checks.slender,
     geometry_checks.points_on_the_tube,
     geometry_checks.supports_on_the_tube,
     geometry_checks.gaps,
-    geometry_checks.offsets,
+    geometry_checks.offsets_on_a_tube,
     names.sensors_of_a_tube,
     turbulence_checks.stretches,
     turbulence_checks.direction,
@@ -340,6 +342,7 @@ TUBE_CHECKS: tuple[Callable[..., Problems], ...] = (
 )
 POINT_CHECKS: tuple[Callable[..., Problems], ...] = (
     names.point_supports,
+    names.same_stop_twice,
     names.places_of_points,
     turbulence_checks.needs_a_tube,
     flow_checks.acts_along_a_tube,
@@ -349,6 +352,7 @@ CHECKS: tuple[Callable[..., Problems], ...] = (
     *POINT_CHECKS,
     names.chain_names,
     geometry_checks.support_lists,
+    geometry_checks.offsets,
     profile_checks.gaps_of_supports,
     profile_checks.preloads,
     profile_checks.profile_normals,
@@ -368,7 +372,7 @@ CHECKS: tuple[Callable[..., Problems], ...] = (
     flow_checks.lags,
     _force,
     _overlay,
-    _bands_below_nyquist,
+    _bands_pass_the_filter,
     _broadband_is_excited,
     _main_peak_is_excited,
     _segments,

@@ -127,7 +127,7 @@ class Measured(Forces):
     sampling_frequency_Hz: Frequency_Hz | None = Field(
         None,
         description="Sampling frequency. Needed only where the file does not give it, by an"
-        " attribute or a time column.",
+        " attribute, a variable Fs or a time column, whose unit counts: `time [ms]`.",
         examples=[2048.0],
     )
 

@@ -27,6 +27,10 @@ Problems = Iterator[tuple[str, Any, str]]
 Tube = UTube | Path
 
 TOLERANCE = 1e-9
+APART_M = 4.0 * LOCATION_TOLERANCE_M  # along the tube: two places, not one seen from a bend
+RADIAL = "give the radial clearance in metres"
+MOST_SLENDER = 1e4
+MOST_OFFSET = 10.0  # gaps that a centre may be off: the structure then presses at rest
 
 
 def path_directions(structure: Tube) -> Problems:
@@ -52,6 +56,21 @@ def path_directions(structure: Tube) -> Problems:
         tangent = math.cos(angle) * tangent + math.sin(angle) * toward / np.linalg.norm(toward)
 
 
+def slender(structure: Tube) -> Problems:
+    """Yield a problem unless a tube is shorter than MOST_SLENDER of its widths."""
+    centreline = centreline_of(structure)
+    width = outer_width(structure.section)
+    if centreline is None or centreline.length <= MOST_SLENDER * width:
+        return
+    key = "leg_length_m" if structure.kind == "u_tube" else "segments"
+    yield (
+        f"structure.{key}",
+        f"{centreline.length:g} m",
+        f"makes the tube {centreline.length / width:.3g} times as long as it is wide, {width:g} m"
+        f" (at most {MOST_SLENDER:g}): lengths and section both in metres?",
+    )
+
+
 def centreline_of(structure: Tube) -> Centreline | None:
     """Return the centreline, or None where its directions are a problem already reported."""
     return None if any(path_directions(structure)) else build_centreline(structure)
@@ -74,6 +93,19 @@ def off_the_tube(centreline: Centreline, place: str, position: Sequence[float]) 
                 f"the nearest point of the centreline is {np.round(nearest, 4).tolist()} m"
             ),
         )
+        return
+    ends = {place for segment in centreline.segments for place in (segment.begin, segment.end)}
+    for other in ends | {segment.nearest(np.array(position)) for segment in centreline.segments}:
+        near = np.linalg.norm(centreline.position(other) - position) <= LOCATION_TOLERANCE_M
+        if near and abs(other - arc_length) > APART_M:
+            yield (
+                place,
+                list(position),
+                f"is on the tube twice, at arc lengths {min(other, arc_length):.4g} and"
+                f" {max(other, arc_length):.4g} m: move it, or let the tube pass itself at more"
+                f" than {2 * LOCATION_TOLERANCE_M} m",
+            )
+            return
 
 
 def points_on_the_tube(structure: Tube, points: Mapping[str, Sequence[float]]) -> Problems:
@@ -212,27 +244,58 @@ def support_lists(supports: Sequence[Support]) -> Problems:
 
 
 def gaps(structure: Tube, grid: Grid, supports: Sequence[Support]) -> Problems:
-    """Yield a problem unless gaps are clearances."""
+    """Yield a problem unless gaps are clearances, with their factors and the depth of lobes."""
     radius = outer_width(structure.section) / 2
-    stated = [(f"grid.gap_m[{index}]", gap) for index, gap in enumerate(grid.gap_m)]
-    stated += [
-        (f"supports[{index}].gap_m", support.gap_m)
-        for index, support in enumerate(supports)
-        if support.gap_m is not None
-    ]
-    for place, gap in stated:
+    told = f"half the diameter, {radius:g} m"
+    for index, gap in enumerate(grid.gap_m):
         if abs(gap) > radius:
+            yield f"grid.gap_m[{index}]", gap, f"is larger than {told}: {RADIAL}"
+    for index, support in enumerate(supports):
+        place = f"supports[{index}]"
+        if support.gap_m is not None and abs(support.gap_m) > radius:
+            yield f"{place}.gap_m", support.gap_m, f"is larger than {told}: {RADIAL}"
+            continue
+        gap, factor, depth = effective_gap(support, grid)
+        if gap * factor > radius >= gap:
             yield (
-                place,
-                gap,
-                (
-                    f"is larger than half the diameter, {radius:g} m: give the radial clearance in"
-                    " metres"
-                ),
+                f"{place}.gap_factor",
+                factor,
+                f"makes the gap of {gap:g} m {gap * factor:.4g} m, larger than {told}: give gap_m",
+            )
+        elif gap * factor + depth > radius >= gap:
+            yield (
+                f"{place}.profile.depth_m",
+                depth,
+                f"makes the clearance {gap * factor + depth:.4g} m, larger than {told}: {RADIAL}",
             )
 
 
-def offsets(structure: Tube, supports: Sequence[Support]) -> Problems:
+def effective_gap(support: Support, grid: Grid) -> tuple[float, float, float]:
+    """Return (largest gap in m, largest factor of it, depth of the lobes in m) of a support."""
+    depth = getattr(support.profile, "depth_m", None) or 0.0
+    if support.gap_m is not None:
+        return support.gap_m, 1.0, depth
+    if support.preload_N is not None:
+        return 0.0, 1.0, depth
+    return max(grid.gap_m), float(np.max(support.gap_factor)), depth
+
+
+def offsets(grid: Grid, supports: Sequence[Support]) -> Problems:
+    """Yield a problem unless offsets are some gaps."""
+    for index, support in enumerate(supports):
+        largest = float(np.max(np.linalg.norm(np.atleast_2d(support.centre_offset_m), axis=1)))
+        gap, factor, depth = effective_gap(support, grid)
+        clearance = gap * factor + depth
+        if clearance > 0.0 and largest > MOST_OFFSET * clearance:
+            yield (
+                f"supports[{index}].centre_offset_m",
+                largest,
+                f"is {largest / clearance:.3g} times the clearance, {clearance:.3g} m (at most"
+                f" {MOST_OFFSET:g}): in metres?",
+            )
+
+
+def offsets_on_a_tube(structure: Tube, supports: Sequence[Support]) -> Problems:
     """Yield a problem unless offsets are smaller than the tube."""
     radius = outer_width(structure.section) / 2
     for index, support in enumerate(supports):

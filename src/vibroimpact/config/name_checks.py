@@ -188,6 +188,20 @@ def point_supports(structure: Structure, supports: Sequence[Support]) -> Problem
             )
 
 
+def same_stop_twice(structure: Structure, supports: Sequence[Support]) -> Problems:
+    """Yield a problem unless supports at one point of a structure differ."""
+    known: list[Support] = []
+    for index, support in enumerate(supports):
+        for other in known:
+            if support.model_copy(update={"name": other.name}) == other:
+                yield (
+                    f"supports[{index}]",
+                    support.name,
+                    f"is '{other.name}' again: leave it out, or add up the stiffness of the two",
+                )
+        known.append(support)
+
+
 def places_of_points(structure: Structure, points: Mapping[str, Sequence[float]]) -> Problems:
     """Yield a problem unless places are those of points that a structure, which is no tube, has."""
     names = names_of_points(structure, points)
@@ -208,6 +222,9 @@ def chain_names(structure: Structure) -> Problems:
     for name, times in Counter(names).items():
         if times > 1:
             yield "structure.masses", name, f"names {times} masses: give each a name of its own"
+    if "ground" in names:
+        place = f"structure.masses[{names.index('ground')}].name"
+        yield place, "ground", "is what springs name the earth: give the mass another name"
     for index, spring in enumerate(structure.springs):
         if len(set(spring.between)) == 1:
             yield (
@@ -253,14 +270,18 @@ def sensors_of_a_tube(structure: Structure, record: RecordKeys) -> Problems:
         )
 
 
-def driven_direction_is_recorded(excitation: Excitation, record: RecordKeys) -> Problems:
+def driven_direction_is_recorded(
+    structure: Structure, excitation: Excitation, record: RecordKeys
+) -> Problems:
     """Yield a problem unless the direction of the force is recorded."""
-    if record.sensors is None or not hasattr(excitation, "direction"):
+    if not hasattr(excitation, "direction"):
         return
     driven = "xyz"[int(np.argmax(np.abs(excitation.direction)))]
-    if driven not in record.sensors.directions:
+    across = structure.kind == "chain" and driven != "x"  # then the model says that nothing moves
+    if record.sensors is not None and not across and driven not in record.sensors.directions:
         yield (
             "record.sensors.directions",
             list(record.sensors.directions),
-            f"lacks '{driven}', the direction of the force, which the identifications need: add it",
+            f"lacks '{driven}', the direction of the force, which figures and estimates read: add"
+            " it",
         )

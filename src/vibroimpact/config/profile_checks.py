@@ -14,13 +14,14 @@ from vibroimpact.geometry.centreline import Centreline
 from vibroimpact.geometry.directions import unit_vector
 
 from .geometry_checks import centreline_of, off_the_tube
-from .profiles import Bars, Broached, Lattice, has_flat_lands
+from .profiles import Bars, Broached, Lattice, Planes, has_flat_lands
 from .quantities import Vector
 from .structure import Path, Structure, UTube
 from .supports import Support
 
 Problems = Iterator[tuple[str, Any, str]]
 
+SAME_DEG = 1e-6
 ACROSS_DEG = 2.0  # a normal given with a few digits may be this far off the plane across the tube
 
 
@@ -68,9 +69,11 @@ def profile_normals(structure: Structure, supports: Sequence[Support]) -> Proble
         return
     for index, support in enumerate(supports):
         profile = support.profile
+        place = f"supports[{index}].profile"
+        if isinstance(profile, Planes):
+            yield from _stops_twice(f"{place}.normals_deg", profile.normals_deg)
         if not isinstance(profile, Broached | Bars | Lattice):
             continue
-        place = f"supports[{index}].profile"
         if isinstance(profile, Lattice) and profile.spacing_m > 0.0 and not tube:
             yield f"{place}.spacing_m", profile.spacing_m, "is for tubes: leave it out"
         if (profile.normal is None) == (profile.angle_deg is None):
@@ -82,6 +85,19 @@ def profile_normals(structure: Structure, supports: Sequence[Support]) -> Proble
             )
         elif profile.normal is not None:
             yield from _across(centreline, f"{place}.normal", profile.normal, support.at_m)
+
+
+def _stops_twice(place: str, normals_deg: Sequence[float]) -> Problems:
+    """Yield a problem where two stops of a profile are one."""
+    for index, angle in enumerate(normals_deg):
+        if any(
+            abs((angle - other + 180.0) % 360.0 - 180.0) < SAME_DEG for other in normals_deg[:index]
+        ):
+            yield (
+                f"{place}[{index}]",
+                angle,
+                "is a stop that is there already: leave it out, or raise stiffness_N_per_m",
+            )
 
 
 def _across(

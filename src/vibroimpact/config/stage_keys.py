@@ -7,7 +7,10 @@ key that it does not declare.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
+
+from vibroimpact.provenance import config_digest
 
 from .schema import Config
 
@@ -116,6 +119,19 @@ STAGE_KEYS: dict[str, tuple[str, ...]] = {
 }
 
 
+# What the numbers of a case depend on, and the tables that gather them.
+ANSWER_STAGES = ("basis", "simulate_to_spectra", "spectra", "identify", "consistency")
+
+
+def answer_digest(values: Mapping[str, Any]) -> str:
+    """Return the digest of all keys that the tables of a study depend on.
+
+    values: nested, of a checked configuration in plain values.
+    """
+    keys = {key for stage in ANSWER_STAGES for key in STAGE_KEYS[stage]}
+    return config_digest(select(values, tuple(sorted(keys))))
+
+
 def stage_params(config: Config, stage: str) -> dict[str, Any]:
     """Return {dotted key: value} of the keys that a stage uses, in plain values.
 
@@ -124,7 +140,7 @@ def stage_params(config: Config, stage: str) -> dict[str, Any]:
     return select(config.model_dump(mode="json"), STAGE_KEYS[stage])
 
 
-def select(values: dict[str, Any], keys: tuple[str, ...]) -> dict[str, Any]:
+def select(values: Mapping[str, Any], keys: tuple[str, ...]) -> dict[str, Any]:
     """Return {dotted key: value} of nested values."""
     return {key: _value_at(values, key.split(".")) for key in keys}
 

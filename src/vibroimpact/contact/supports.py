@@ -244,7 +244,7 @@ def _require_apart(supports: Sequence[ConfigPart], places: list[np.ndarray]) -> 
     """Raise ValueError when two supports share a stretch of the tube."""
     order = sorted(range(len(places)), key=lambda number: places[number][0])
     for lower, upper in zip(order[:-1], order[1:], strict=True):
-        if places[lower][-1] > places[upper][0] - SAME_PLACE_M:
+        if places[lower][-1] > places[upper][0] + SAME_PLACE_M:  # they may meet
             raise ValueError(
                 f"supports {supports[lower].name} and {supports[upper].name} overlap on the tube:"
                 " move one of them"

@@ -7,8 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from vibroimpact.config.problems import ConfigError
+from vibroimpact.config.stage_keys import answer_digest
+from vibroimpact.config.yaml_file import read_yaml
 from vibroimpact.records import RecordError, read_table
-from vibroimpact.study.equivalent_table import equivalent_rows
+from vibroimpact.study.equivalent_table import DIGEST_COLUMN, equivalent_rows
+from vibroimpact.study.run_files import CONFIG_FILE
 
 from .answer import EquivalentError
 
@@ -25,7 +29,7 @@ def summary_rows_of(folder: Path, direction: str) -> list[dict[str, Any]]:
     """
     path = folder / SUMMARY
     try:
-        rows = read_table(path)
+        rows = read_table(path, (DIGEST_COLUMN,))
     except RecordError as error:
         raise EquivalentError(
             f"{path}: is not there: name a finished study with identification, as in"
@@ -33,7 +37,27 @@ def summary_rows_of(folder: Path, direction: str) -> list[dict[str, Any]]:
         ) from error
     if not rows:
         raise EquivalentError(f"{path}: has no rows: the study identified nothing")
+    _require_own(path, rows)
     return [_one_schema(row, direction) for row in rows]
+
+
+def _require_own(path: Path, rows: list[dict[str, Any]]) -> None:
+    """Raise EquivalentError where a table is of another configuration than that of its folder.
+
+    Tables of before the column, and copies without a configuration beside them, are taken.
+    """
+    beside = path.parent / CONFIG_FILE
+    if DIGEST_COLUMN not in rows[0] or not beside.is_file():
+        return
+    try:
+        current = answer_digest(read_yaml(beside))
+    except (ConfigError, LookupError, TypeError) as error:
+        raise EquivalentError(f"{beside}: is not the configuration of a run ({error})") from error
+    if {row[DIGEST_COLUMN] for row in rows} != {current}:
+        raise EquivalentError(
+            f"{path}: is of another configuration than {beside}, whose run did not come to its end:"
+            f" run `snakemake -j2 --configfile {beside}`, or your own file, to the end first"
+        )
 
 
 def _one_schema(row: dict[str, Any], direction: str) -> dict[str, Any]:
@@ -61,7 +85,10 @@ def recommended_rows_of(
     where the study does not have it.
     """
     path = folder / RECOMMENDED
-    rows = read_table(path) if path.is_file() else equivalent_rows(summary)
+    rows = equivalent_rows(summary)
+    if path.is_file():
+        rows = read_table(path, (DIGEST_COLUMN,))
+        _require_own(path, rows)
     return [_from_table(row, direction) for row in rows]
 
 

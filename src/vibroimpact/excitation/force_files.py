@@ -1,54 +1,74 @@
-"""Reading a measured force from netCDF, CSV or MATLAB files."""
+"""Reading a measured force from netCDF, CSV or MATLAB files, and whether it lasts for a case."""
 
-import csv
-from collections import Counter
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from vibroimpact.foreign_arrays import ForeignFileError, refused_if_damaged
-from vibroimpact.matlab_files import load_matlab
-from vibroimpact.records import RecordError, read_numeric_variables
+from vibroimpact.signal_files.csv_table import read_csv
+from vibroimpact.signal_files.matlab import read_matlab
+from vibroimpact.signal_files.netcdf import read_netcdf
+from vibroimpact.signal_files.signals import ImportProblem, Signal
+from vibroimpact.units import UnitError, si_factor
 
-TIME_NAMES = ("time", "t", "time_s")
-RATE_NAMES = ("Fs", "fs", "sampling_frequency", "sampling_frequency_Hz")
+READERS = {".nc": read_netcdf, ".csv": read_csv, ".mat": read_matlab}
 LARGEST_N = 1e20
+MOST_STEPS_APART = 1000  # integration steps between two samples: a force of 51 Hz at 51200 steps/s
+LEAST_SHARE = 1e-3  # of the RMS of the whole force: less in the record is the round-off of its end
 
 
 class ForceFileError(ForeignFileError):
     """A force file that cannot be read; the message names it, what is wrong and the remedy."""
 
 
-def read_force(
-    path: str | Path, variable: str, sampling_frequency: float | None
-) -> tuple[np.ndarray, float]:
-    """Return (values (sample,) in N, sampling frequency in Hz) of one variable of a file.
+@dataclass(frozen=True)
+class MeasuredForce:
+    """A force as its file gives it.
 
-    The file brings its sampling frequency:
+    values (sample,): N. rate: Hz. note: how the file was read, "" where as it stands.
+    """
 
-    - netCDF (.nc): an attribute `sampling_frequency`, or a time coordinate;
-    - CSV (.csv) with a header line: a column "time";
-    - MATLAB v5 (.mat): a variable `Fs`.
+    values: np.ndarray
+    rate: float
+    note: str = ""
+
+    def described(self) -> str:
+        """Return the rate and duration in words."""
+        told = f"{self.values.size / self.rate:.6g} s at {self.rate:.6g} Hz"
+        return f"{told} ({self.note})" if self.note else told
+
+
+def read_force(path: str | Path, variable: str, sampling_frequency: float | None) -> MeasuredForce:
+    """Return one variable of a file, read as those of a measured campaign are.
+
+    The file brings its sampling frequency: an attribute or variable `Fs` or `sampling_frequency`,
+    or times, whose unit counts (netCDF attribute `units`, CSV column "time [ms]").
 
     sampling_frequency: Hz, for a file that has none; it must agree where the file has one.
 
     Raises ForceFileError when the file or variable is missing, its kind is unknown, it is damaged,
-    it has no sampling frequency or holds values that are not finite, or 0 throughout.
+    it has no sampling frequency or two that differ, or holds values that are not finite, or 0
+    throughout.
     """
     path = Path(path)
-    readers = {".nc": _from_netcdf, ".csv": _from_csv, ".mat": _from_matlab}
-    if path.suffix.lower() not in readers:
+    reader = READERS.get(path.suffix.lower())
+    if reader is None:
         raise ForceFileError(f"{path}: unknown kind '{path.suffix}': give a .nc, .csv or .mat file")
     if not path.is_file():
         raise ForceFileError(f"{path}: no such file: check excitation.file")
     try:
         with refused_if_damaged(path, "netCDF, CSV or MATLAB by its ending", "export it again"):
-            values, rate = readers[path.suffix.lower()](path, variable)
-            values = _one_record(path, variable, values)
+            try:
+                signal = _named(path, reader(path), variable)
+            except ImportProblem as problem:
+                raise ForceFileError(str(problem)) from problem
     except ForceFileError:
         raise
     except ForeignFileError as error:
         raise ForceFileError(str(error)) from error
+    values = _newtons(path, variable, signal)
+    rate = signal.rate
     if rate and sampling_frequency and abs(rate - sampling_frequency) > 1e-6 * rate:
         raise ForceFileError(
             f"{path}: sampled at {rate:g} Hz, but excitation.sampling_frequency_Hz ="
@@ -59,18 +79,28 @@ def read_force(
         raise ForceFileError(
             f"{path}: says no sampling frequency: give excitation.sampling_frequency_Hz"
         )
-    return values, float(found)
+    return MeasuredForce(values, float(found), signal.note)
 
 
-def _one_record(path, variable, values):
-    """Return the values of a variable as (sample,) of float. Raises ForceFileError."""
-    if getattr(values, "dtype", np.dtype(object)).kind not in "fiu" or not hasattr(values, "ravel"):
-        raise ForceFileError(f"{path}: {variable} holds no real numbers: give a column of forces")
-    values = np.asarray(values, float).squeeze()
-    if values.ndim != 1 or values.size < 2:
-        raise ForceFileError(
-            f"{path}: {variable} has shape {values.shape}, one record of many samples is needed"
-        )
+def _named(path: Path, signals: list[Signal], variable: str) -> Signal:
+    """Return the signal of a name. Raises ForceFileError."""
+    for signal in signals:
+        if signal.name == variable:
+            return signal
+    if signals and (reason := signals[0].left_out.get(variable)):
+        raise ForceFileError(f"{path}: {variable} {reason}: give one record of many real numbers")
+    names = ascii(", ".join(sorted(signal.name for signal in signals)))[1:-1]
+    raise ForceFileError(f"{path}: no variable '{variable}': it has {names[:200]}")
+
+
+def _newtons(path: Path, variable: str, signal: Signal) -> np.ndarray:
+    """Return the values (sample,) of a signal in N; without a unit they are. Raises
+    ForceFileError.
+    """
+    try:
+        values = signal.values * (si_factor(signal.unit, "force") if signal.unit else 1.0)
+    except UnitError as error:
+        raise ForceFileError(f"{path}: {variable} {error}") from error
     odd = ~(np.abs(values) <= LARGEST_N)  # true for what is not a number, too
     if odd.any():
         raise ForceFileError(
@@ -82,86 +112,33 @@ def _one_record(path, variable, values):
     return values
 
 
-def _pick(path, known, variable):
-    """Return a variable among those known by name. Raises ForceFileError."""
-    if variable not in known:
-        names = ascii(", ".join(sorted(known)) or "none")[1:-1]
-        raise ForceFileError(f"{path}: no variable '{variable}': it has {names[:200]}")
-    return known[variable]
+def require_lasting(
+    path: str | Path, force: MeasuredForce, rate: float, start_up_s: float, needed_s: float
+) -> None:
+    """Raise ForceFileError where a force is not that of a case.
 
+    rate: Hz, of the integration. start_up_s: s, before the record. needed_s: s, of both.
 
-def _stated_rate(path, known):
-    """Return the sampling frequency in Hz that stands among named values, None without one.
-
-    Raises ForceFileError.
+    It is too short, ends within the start-up, or its samples are so far apart that its times are
+    hardly in seconds.
     """
-    for name in RATE_NAMES:
-        if name in known:
-            rate = np.asarray(known[name])
-            if rate.size != 1 or rate.dtype.kind not in "fiu" or not 0 < rate.item() <= 1e9:
-                raise ForceFileError(
-                    f"{path}: its {name} is no frequency in Hz: correct it, or take it out and give"
-                    " excitation.sampling_frequency_Hz"
-                )
-            return float(rate.item())
-    return None
-
-
-def _rate_of(time, path):
-    """Return the sampling frequency in Hz of evenly spaced times in s. Raises ForceFileError."""
-    steps = np.diff(np.asarray(time, float).squeeze())
-    if steps.ndim != 1 or not (
-        steps.size and np.all(steps > 1e-9) and np.ptp(steps) <= 1e-3 * np.mean(steps)
-    ):
+    samples = force.values
+    if rate > MOST_STEPS_APART * force.rate:
         raise ForceFileError(
-            f"{path}: the time column is not evenly spaced: resample the record first"
+            f"{path}: its samples are {1 / force.rate:.4g} s apart, {rate / force.rate:.4g}"
+            f" integration steps (at most {MOST_STEPS_APART}): are its times in ms? Name the column"
+            ' "time [ms]", or give a netCDF time the attribute units = "ms"; or resample it'
         )
-    return 1.0 / np.mean(steps)
-
-
-def _from_netcdf(path, variable):
-    try:
-        known, *_, attributes = read_numeric_variables(path)
-    except RecordError as error:
-        raise ForceFileError(str(error)) from error
-    values = _pick(path, known, variable)
-    time = next((known[name] for name in TIME_NAMES if name in known), None)
-    rate = _stated_rate(path, attributes)
-    return values, rate or (_rate_of(time, path) if time is not None else None)
-
-
-def _from_csv(path, variable):
-    text = _text(path)
-    lines = [line for line in text.splitlines() if line.strip()]
-    if len(lines) < 2:
-        raise ForceFileError(f"{path}: holds no numbers under a header line: export it again")
-    header = next(csv.reader([lines[0].lstrip("# ")]), [])
-    twice = [name for name, times in Counter(name.strip() for name in header).items() if times > 1]
-    if twice:
-        raise ForceFileError(f"{path}: two columns are named '{twice[0][:60]}': rename one")
-    try:
-        table = np.genfromtxt(lines, delimiter=",", names=True, dtype=float, comments="#")
-    except ValueError as error:
+    if samples.size / force.rate < needed_s * (1.0 - 1e-9):
         raise ForceFileError(
-            f"{path}: not a table of numbers under one header line: give every line as many numbers"
-            " as the header has names"
-        ) from error
-    known = {name: table[name] for name in table.dtype.names or ()}
-    time = next((known[name] for name in TIME_NAMES if name in known), None)
-    return _pick(path, known, variable), _rate_of(time, path) if time is not None else None
-
-
-def _text(path):
-    """Return the text of a table in UTF-8, or else in Latin-1. Raises ForceFileError."""
-    raw = path.read_bytes()
-    if b"\0" in raw:
-        raise ForceFileError(f"{path}: is a binary file: export the force as text, .nc or .mat")
-    try:
-        return raw.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return raw.decode("latin-1")
-
-
-def _from_matlab(path, variable):
-    content = load_matlab(path)
-    return _pick(path, content, variable), _stated_rate(path, content)
+            f"{path}: lasts {samples.size / force.rate:.3f} s, but start-up and record need"
+            f" {needed_s:.3f} s: lower integration.start_up_s or record.duration_s"
+        )
+    recorded = samples[round(start_up_s * force.rate) : round(needed_s * force.rate)]
+    left, whole = (float(np.sqrt(np.mean(part**2))) for part in (recorded, samples))
+    if left < LEAST_SHARE * whole:
+        raise ForceFileError(
+            f"{path}: the force ends within the start-up of {start_up_s:g} s: the record would hold"
+            f" {left:.3g} of {whole:.3g} N RMS: lower integration.start_up_s,"
+            " or cut the file"
+        )

@@ -17,7 +17,7 @@ import numpy as np
 
 from vibroimpact.config.stage_settings import ConfigPart
 
-from .force_files import read_force
+from .force_files import read_force, require_lasting
 from .random_force import ForceError, noise_lines, resample_measured
 
 OVERSAMPLING = 5  # lowest rate of the short record, in units of the band's upper edge
@@ -65,9 +65,9 @@ class ForceStream:
         recorded: slice of the samples that are recorded.
         first_time_s: time of the first sample in s, for a sine.
 
-        Raises ForceError when a measured record is too short or zero.
+        Raises ForceError, or ForceFileError for a measured record that is too short or zero.
         """
-        self._source = _source(excitation, generator, samples, rate, first_time_s)
+        self._source = _source(excitation, generator, samples, rate, recorded, first_time_s)
         self._blocks: dict[int, np.ndarray] = {}
         self._scale = 1.0
         if self._source.exact_rms:
@@ -117,6 +117,7 @@ def _source(
     generator: Any,
     samples: int,
     rate: float,
+    recorded: slice,
     first_time_s: float,
 ) -> Any:
     """Return the source of blocks of a kind of excitation."""
@@ -135,25 +136,21 @@ def _source(
         return _WhiteNoise(generator)
     if source.kind == "band_limited":
         return _Interpolated(*noise_lines(generator, samples, rate, source.band_Hz))
-    values, duration = _measured(
-        excitation.file, excitation.variable, excitation.sampling_frequency_Hz, rate
-    )
-    if values.size < samples:
-        raise ForceError(
-            f"{excitation.file}: {excitation.variable} lasts {duration:.3f} s, but start-up and"
-            f" record need {samples / rate:.3f} s: lower integration.start_up_s or"
-            " record.duration_s"
-        )
-    return _Stored(values)
+    file = (excitation.file, excitation.variable, excitation.sampling_frequency_Hz)
+    return _Stored(_measured(file, rate, (recorded.start or 0) / rate, samples / rate))
 
 
 @lru_cache(maxsize=1)
 def _measured(
-    path: str, variable: str, sampling_frequency: float | None, rate: float
-) -> tuple[np.ndarray, float]:
-    """Return (a measured record at rate [Hz], its duration in s); one copy serves all seeds."""
-    values, measured_rate = read_force(path, variable, sampling_frequency)
-    return resample_measured(values, measured_rate, rate), values.size / measured_rate
+    file: tuple[str, str, float | None], rate: float, start_up_s: float, needed_s: float
+) -> np.ndarray:
+    """Return a measured record at rate [Hz]; one copy serves all seeds.
+
+    file: path, variable, sampling frequency. Times as for require_lasting.
+    """
+    force = read_force(*file)
+    require_lasting(file[0], force, rate, start_up_s, needed_s)
+    return resample_measured(force.values, force.rate, rate)
 
 
 class _Formula:

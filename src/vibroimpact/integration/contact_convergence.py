@@ -17,6 +17,19 @@ LARGEST_TURN = 1.0e6  # rad of a mode in a step; beyond, its phase has lost half
 LARGEST_DECAY = 40.0
 
 
+MOST_STEPS = 1.0e8  # per second, that integration.steps_per_second takes
+
+
+def more_steps(needed: float) -> str:
+    """Return the remedy of a step that is too long, where the key takes as many steps."""
+    if needed <= MOST_STEPS:
+        return f"raise integration.steps_per_second to at least {int(np.ceil(needed))}"
+    return (
+        f"no integration.steps_per_second is enough ({needed:.2g} would be, at most"
+        f" {MOST_STEPS:g} are taken): lower that stiffness or damping"
+    )
+
+
 class IntegrationError(Exception):
     """A run that cannot be done, or that diverged; the message names the place and the remedy.
 
@@ -91,9 +104,8 @@ def checked_contraction(
             f" {1 / steps_per_second:.3g} s: the contact iteration contracts by {contraction:.2g}"
             f" only (limit {CONTRACTION_LIMIT}; the stiffness is that of a point of"
             " supports.stiffness_N_per_m or of an element; dampers, friction springs and light"
-            " plates count too): raise"
-            " integration.steps_per_second to at least"
-            f" {steps_per_second * np.sqrt(contraction / CONTRACTION_LIMIT):.0f}"
+            " plates count too):"
+            f" {more_steps(steps_per_second * np.sqrt(contraction / CONTRACTION_LIMIT))}"
         )
     return contraction
 
@@ -105,8 +117,9 @@ def _require_digits(model: ModalModel, steps_per_second: float, scheme: str) -> 
         raise IntegrationError(
             f"integration.steps_per_second = {steps_per_second:g}: a mode of"
             f" {highest / (2.0 * np.pi):.3g} Hz turns by {highest / steps_per_second:.3g} rad in a"
-            f" step, at most {LARGEST_TURN:g}: make it softer or heavier (a support's plate, a"
-            " mode_frequency_factor, the matrices)"
+            f" step, at most {LARGEST_TURN:g}: make it softer or heavier (contact points"
+            " closer than the tube is wide, by height_m over points; a support's plate; a"
+            " mode_frequency_factor; the matrices)"
         )
     strongest = model.damping.max(initial=0.0)
     if scheme == "exact" and strongest > LARGEST_DECAY * steps_per_second:
@@ -114,6 +127,6 @@ def _require_digits(model: ModalModel, steps_per_second: float, scheme: str) -> 
         raise IntegrationError(
             f"integration.steps_per_second = {steps_per_second:g}: the mode at {mode:.3g} Hz decays"
             f" by exp(-{strongest / steps_per_second:.3g}) in a step of the exact scheme, at most"
-            f" exp(-{LARGEST_DECAY:g}): give at least {int(np.ceil(strongest / LARGEST_DECAY))},"
-            " less damping (modal in place of rayleigh), or integration.scheme: newmark"
+            f" exp(-{LARGEST_DECAY:g}): {more_steps(strongest / LARGEST_DECAY)}, give less damping"
+            " (modal in place of rayleigh), or integration.scheme: newmark"
         )

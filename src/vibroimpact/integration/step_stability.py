@@ -9,7 +9,7 @@ import numpy as np
 
 from vibroimpact.reduction.modal_model import ModalModel
 
-from .contact_convergence import IntegrationError
+from .contact_convergence import IntegrationError, more_steps
 from .kernel_layout import ModalLayout
 from .modal_step import step_coefficients, step_matrices
 
@@ -59,8 +59,8 @@ def require_stable_step(model: ModalModel, steps_per_second: float, scheme: str)
             f"integration.steps_per_second = {steps_per_second:g}: on the springs and dampers of"
             f" the contacts and elements, a motion grows by {growth:.2g} in every step of the"
             f" {scheme} scheme (the highest mode has {highest / (2.0 * np.pi):.4g} Hz, omega x"
-            f" step = {highest / steps_per_second:.3g}): give at least"
-            f" {int(np.ceil(highest / SAFE_OMEGA_STEP))}, or integration.scheme: newmark"
+            f" step = {highest / steps_per_second:.3g}): {more_steps(highest / SAFE_OMEGA_STEP)},"
+            " or give integration.scheme: newmark"
         )
 
 

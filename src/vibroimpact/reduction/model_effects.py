@@ -23,8 +23,9 @@ def without_effect(model: ModalModel, excitation: ConfigPart) -> Iterator[str]:
             "excitation: the force has no effect, nothing moves along it there: give another point"
             " or direction, a factor that is not 0, or kind: none"
         )
+    reached = _points_that_close(model)
     for number, name in enumerate(model.support_names):
-        if not np.any(model.contact_shapes[:, model.support_of_point == number]):
+        if not np.any(reached[model.support_of_point == number]):
             yield (
                 f"supports[{number}]: '{name}' has no effect, nothing moves across it there: move"
                 " it, or leave it out"
@@ -36,6 +37,17 @@ def without_effect(model: ModalModel, excitation: ConfigPart) -> Iterator[str]:
                 f"elements: '{name}' has no effect, its ends do not move along it: give another"
                 " point or direction, or leave it out"
             )
+
+
+def _points_that_close(model: ModalModel) -> np.ndarray:
+    """Return (contact_point,) whether the structure moves towards the obstacle or a flat land."""
+    laws, shapes = model.contact_laws, model.contact_shapes
+    reached = np.any(shapes, axis=(0, 2))
+    towards = np.einsum("mla,la->ml", shapes[:, laws.land_point], laws.land_normal)
+    least = ROUND_OFF * np.abs(shapes).max(initial=0.0)
+    reached[laws.land_point] = False
+    np.logical_or.at(reached, laws.land_point, np.abs(towards).max(axis=0, initial=0.0) > least)
+    return reached
 
 
 def runaway(model: ModalModel) -> Iterator[str]:

@@ -80,7 +80,7 @@ def build_model(
     """
     tube = config.structure.kind in TUBES
     structure, local_rows = full_structure(config, nodes=None if basis is None else basis.nodes)
-    point_rows = _point_rows(structure, config)
+    point_rows = point_rows_of(structure, config)
     if basis is not None and len(basis.shapes) == structure.dofs:
         omega, shapes = _modes_in(structure, local_rows, basis.shapes)
         full_frequencies = omega / (2.0 * np.pi)
@@ -129,7 +129,7 @@ def full_structure(
         structure: Any = build_structure(config, halved, nodes)
     else:
         structure = build_point_structure(config)
-    point_rows = _point_rows(structure, config)
+    point_rows = point_rows_of(structure, config)
     dampers = getattr(structure, "dampers", [])
     local_rows = np.vstack(
         [
@@ -256,7 +256,7 @@ def _axis(config: ConfigPart) -> Sequence[float] | np.ndarray:
     return turn_axis(config, config.points.get(config.excitation.point, nowhere))
 
 
-def _point_rows(structure: Any, config: ConfigPart) -> Callable[[str], np.ndarray]:
+def point_rows_of(structure: Any, config: ConfigPart) -> Callable[[str], np.ndarray]:
     """Return the function of a point's name that gives its displacement rows (3, dof)."""
     if config.structure.kind in TUBES:
         return lambda name: structure.displacement_rows(named_arc_length(structure, config, name))

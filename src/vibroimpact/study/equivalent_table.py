@@ -36,6 +36,8 @@ EQUIVALENT_COLUMNS = (
     "k_bound",
     "contact_fraction",
 )
+# Of every table that answers: answer_digest of the configuration that it is of.
+DIGEST_COLUMN = "config_digest"
 NO_SPAN: Span = (np.nan, np.nan, np.nan)
 
 

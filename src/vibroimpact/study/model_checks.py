@@ -6,9 +6,11 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations, count
+from typing import Any
 
 import numpy as np
 
+from vibroimpact.config.idle_keys import idle_keys
 from vibroimpact.config.problems import shown
 from vibroimpact.config.schema import Basis, Config
 from vibroimpact.identify.guards import FEWEST_AVERAGES, few_averages
@@ -28,6 +30,7 @@ from vibroimpact.reduction.reduced_model import (
     build_model,
     full_structure,
     keeps_all_modes,
+    point_rows_of,
 )
 from vibroimpact.spectra.welch import driven_axis, effective_averages
 
@@ -50,14 +53,14 @@ class ModelChecks:
 
 def check_model(config: Config) -> ModelChecks:
     """Return the problems of a study's model: of its files, structure, basis, step and mesh."""
+    problems, step = [*idle_keys(config)], config.integration
     try:
         structure, _ = full_structure(config)
         if structure.dofs > MOST_DOFS:
-            return ModelChecks()
+            return ModelChecks(tuple(problems))
         model = build_model(config)
     except ValueError as error:
-        return ModelChecks((str(error),))
-    problems, step = [], config.integration
+        return ModelChecks((*problems, str(error)))
     if keeps_all_modes(structure) and config.basis != Basis():
         problems.append(
             f"basis = {shown(dict(config.basis))} has no effect: a structure with"
@@ -65,6 +68,7 @@ def check_model(config: Config) -> ModelChecks:
             f" tube does up to {MAX_FULL_DOFS}: leave basis out, or reduce the matrices"
         )
     problems += [*without_effect(model, config.excitation), *runaway(model)]
+    problems += [*still_points(config, structure), *too_many_ratios(config, model)]
     problems += unseen(config, model)
     try:
         checked_contraction(model, step.steps_per_second, step.scheme)
@@ -77,6 +81,34 @@ def check_model(config: Config) -> ModelChecks:
     told = [] if condensed is None else [f"structure.mass: {condensed.told()}"]
     warnings = (*told, *short_record(config), *mesh_warnings(accuracy))
     return ModelChecks(tuple(problems), warnings)
+
+
+def still_points(config: Config, structure: Any) -> Iterator[str]:
+    """Yield a sentence for each mass, and each force beside the first, at a point that is held."""
+    rows_of, force = point_rows_of(structure, config), config.excitation
+    forces = {
+        f"excitation.{key}[{index}]": entry
+        for key in ("also", "constant")
+        for index, entry in enumerate(getattr(force, key, ()))
+    }
+    masses = {f"masses[{index}]": mass for index, mass in enumerate(config.masses)}
+    for place, entry in (masses | forces).items():
+        along = np.asarray(getattr(entry, "direction", np.eye(3)))
+        if not np.any(along @ rows_of(entry.point)):
+            yield (
+                f"{place}.point = '{entry.point}' has no effect, nothing moves there: give another"
+                " point, or leave it out"
+            )
+
+
+def too_many_ratios(config: Config, model: ModalModel) -> Iterator[str]:
+    """Yield that a structure has fewer modes than damping ratios are stated."""
+    ratios, modes = getattr(config.damping, "first_ratios", ()), np.count_nonzero(model.omega)
+    if len(ratios) > modes and config.damping != Config.model_fields["damping"].get_default():
+        yield (
+            f"damping.first_ratios = {shown(ratios)} has {len(ratios)} values for {modes} modes:"
+            " give one for each of the first modes, at most as many as there are"
+        )
 
 
 def unseen(config: Config, model: ModalModel) -> Iterator[str]:

@@ -10,7 +10,9 @@ import atexit
 import fcntl
 import json
 import os
-from collections.abc import Sequence
+import shlex
+import time
+from collections.abc import Iterable, Sequence
 from contextlib import ExitStack, suppress
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
@@ -20,6 +22,7 @@ from typing import TextIO
 from vibroimpact.whole_file import HOST, RecordError, folder_problem, process_lives
 
 BOOT = Path("/proc/sys/kernel/random/boot_id")  # on Linux; a new one at each start of the machine
+CLOCK_S = 60.0  # that the clocks of two machines may differ
 
 
 class FolderTaken(Exception):
@@ -54,6 +57,25 @@ def start_text(killed: Owner | None, removed: Sequence[Path]) -> list[str]:
     if removed:
         lines.append(f"{len(removed)} temporary files of killed jobs are removed.")
     return lines
+
+
+def require_past(files: Iterable[str | Path]) -> None:
+    """Raise RecordError for files that are dated in the future.
+
+    Snakemake takes what is made of them for older than they are, and deletes it.
+    """
+    now = time.time()
+    ahead = {Path(file) for file in files if os.path.isfile(file)}
+    ahead = {file for file in ahead if file.stat().st_mtime > now + CLOCK_S}
+    if ahead:
+        first = min(ahead)
+        hours = (first.stat().st_mtime - now) / 3600.0
+        more = f", and {len(ahead) - 1} more" if len(ahead) > 1 else ""
+        raise RecordError(
+            f"{first} is dated {hours:.2g} hours in the future{more}: what is made of it would seem"
+            " older and be thrown away. Set the clock of this machine, or of the one that wrote it,"
+            f" then give it the present time: touch {shlex.join(map(str, sorted(ahead)[:5]))}"
+        )
 
 
 def take_folder(mark: str | Path, command: Sequence[str]) -> Owner | None:

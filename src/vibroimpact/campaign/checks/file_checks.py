@@ -32,6 +32,7 @@ from vibroimpact.campaign.signals import (
 )
 from vibroimpact.records import RecordError
 
+from .between_records import contradictions, copies, spike
 from .linear_record import (
     NO_CAUSE,
     alignment,
@@ -65,12 +66,14 @@ CHECKS = (
     "sizes",
     "time",
     "gaps in time",
+    "spikes",
     "clipping",
     "drop-outs",
     "load_rms",
     "coherence",
     "delay",
     "swapped channels",
+    "between records",
     "directions",
     "stationarity",
     "record length",
@@ -79,7 +82,7 @@ CHECKS = (
 NOT_CHECKED = "not checked"
 BESIDE = {"base motion": "load_rms"}  # a check of some campaigns alone, and where it stands
 # A warning of these excludes its signal from every comparison.
-EXCLUDING_CHECKS = ("units", "gaps in time", "clipping", "drop-outs", "record length")
+EXCLUDING_CHECKS = ("units", "gaps in time", "spikes", "clipping", "drop-outs", "record length")
 LEVELS_APART = 1.05
 BANDS_PER_DECADE = 24 / np.log10(200.0 / 5.0)
 FEWEST_PERIODS, GOOD_AVERAGES = 10.0, 6.0
@@ -139,6 +142,7 @@ def check_campaign(campaign: xr.Dataset) -> list[dict]:
     rows += [
         *load_rows(campaign, measured),
         *_linear(measured, spectra, record),
+        *_between_records(measured),
         *_directions(measured),
         *_stationarity(measured, usable, spectra),
         *_length(measured, spectra),
@@ -171,12 +175,14 @@ PASSED = {
     "sizes": "Gaps and places are as large as those of a structure in metres.",
     "time": "Samples are even in time and agree with sampling_frequency.",
     "gaps in time": "No sample is missing.",
+    "spikes": "No sample stands alone far beyond all others.",
     "clipping": "No signal has flat tops.",
     "drop-outs": "No signal is held or vanishes for a while.",
     "load_rms": "load_rms is the RMS of the first force channel.",
     "coherence": "At the lowest level the responses follow the force.",
     "delay": "No channel lags the others at the lowest level.",
     "swapped channels": "Nothing hints at swapped or reversed channels.",
+    "between records": "No record contradicts the others, and none is a copy.",
     "directions": "Every channel has a place and a unit direction.",
     "stationarity": "No band level drifts within a record.",
     "record length": "Every record is long enough for the lowest band that is looked at.",
@@ -255,6 +261,18 @@ def _faults_of(signal, period, measured, record, channel, what):
             "drop-outs",
             "warn",
             f"{channel} is zero throughout record {record}. {what}.",
+            record,
+            channel,
+        )
+        return
+    at = spike(signal)
+    if at is not None:
+        yield check_row(
+            "spikes",
+            "warn",
+            f"{channel} has a single sample of {signal[at]:.4g} (SI) at {at / measured.rate:.3f} s"
+            f" in record {record}, alone beyond all others: a fault of the transmission. {what}:"
+            " cut it out with from_s and to_s, or record again.",
             record,
             channel,
         )
@@ -373,6 +391,24 @@ def _mix_ups(measured, spectra, name):
             f" resonance in record {name}: its polarity seems reversed.",
             name,
             measured.channels[against],
+        )
+
+
+def _between_records(measured):
+    """Yield rows of records and channels that are copies, and of those that contradict others."""
+    rows = [*copies(measured)]
+    if len(measured.forces) > 1:
+        reason = "with several forces, each may drive what does not follow the first"
+        yield _not_checked("between records", reason)
+    elif len(measured.records) > 1:
+        rows += contradictions(measured)
+    for record, channel, sentence in rows:
+        yield check_row(
+            "between records",
+            "warn",
+            f"{sentence} Correct the file, or leave the record out.",
+            measured.records[record],
+            measured.forces[0] if channel is None else measured.channels[channel],
         )
 
 

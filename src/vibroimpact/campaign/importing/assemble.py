@@ -14,13 +14,13 @@ from vibroimpact.campaign.file import (
     load_of,
     with_no_force,
 )
+from vibroimpact.signal_files.signals import ImportProblem
 from vibroimpact.units import si_factor, si_unit
 
 from .cuts import Cut, cut_records
 from .raw_files import raw_files, read_signals
 from .sensors import Measured, ResolvedSensor, one_rate, read_voltage, resolve_sensors
 from .sidecar import NAME, Drive, Record, Sensor, Sidecar, read_sidecar
-from .signals import ImportProblem
 
 
 def import_folder(folder: str | Path) -> tuple[xr.Dataset, list[dict]]:

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
+from vibroimpact.signal_files.signals import EVEN_WITHIN, ImportProblem, Signal
 from vibroimpact.units import si_factor
 
 from .sensors import Measured, ResolvedSensor
 from .sidecar import NAME, Record, record_names
-from .signals import EVEN_WITHIN, ImportProblem, Signal
 
 # A measured value in SI units, and one as float32 can store it.
 MOST_SI, MOST_STORED, LEAST_STORED = 1e12, 1e30, 1e-30

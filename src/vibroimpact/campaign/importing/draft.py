@@ -6,11 +6,11 @@ import json
 from pathlib import Path
 
 from vibroimpact.records import write_text
+from vibroimpact.signal_files.signals import ImportProblem, Signal
 
 from .assemble import import_folder
 from .raw_files import raw_files, read_signals
 from .sidecar import DIRECTIONS, NAME
-from .signals import ImportProblem, Signal
 
 UNKNOWN = "FILL_IN"
 HEAD = (

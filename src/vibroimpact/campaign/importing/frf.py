@@ -9,9 +9,9 @@ import numpy as np
 
 from vibroimpact.campaign.file import Channel
 from vibroimpact.campaign.force_kinds import FORCE
+from vibroimpact.signal_files.signals import ImportProblem
 from vibroimpact.units import TIME_DERIVATIVES, UnitError, si_factor
 
-from .signals import ImportProblem
 from .uff import FORCE_TYPES, KIND_OF_TYPE, node_name, nodes_of, read_datasets, unit_of
 
 FRF = 4  # function type

@@ -9,12 +9,12 @@ from collections.abc import Collection, Iterable
 from pathlib import Path
 
 from vibroimpact.records import MOST_READ
+from vibroimpact.signal_files.csv_table import read_csv
+from vibroimpact.signal_files.matlab import read_matlab
+from vibroimpact.signal_files.netcdf import read_netcdf
+from vibroimpact.signal_files.signals import UNREAD, ImportProblem, Signal
 
-from .csv_table import read_csv
-from .matlab import read_matlab
-from .netcdf import read_netcdf
 from .sidecar import NAME, read_sidecar
-from .signals import UNREAD, ImportProblem, Signal
 from .uff import read_uff
 
 READERS = {
@@ -97,14 +97,28 @@ def _measured(folder: Path, inside: list[Path], wanted: Collection[str] | None) 
         raise ImportProblem("\n".join(unread))
     if not files and wanted is not None:
         raise ImportProblem(
-            f"{folder / NAME}: none of its files {', '.join(sorted(wanted))} is in the folder (read"
-            f" are {', '.join(READERS)})"
+            "\n".join(
+                f"{folder / NAME}: record file '{name}' {absence(folder / name)} (read are"
+                f" {', '.join(READERS)})"
+                for name in sorted(wanted)
+            )
         )
     if not files:
         raise ImportProblem(
             f"{folder}: holds no measurement: files ending in {', '.join(READERS)} are read"
         )
     return files
+
+
+def absence(path: Path) -> str:
+    """Return why a file that is wanted is not among those that are read."""
+    if ".." in path.parts:
+        return "is outside the folder: put a copy into it, only its own files are read"
+    if path.is_dir():
+        return "is a folder, not a file"
+    if path.is_file():
+        return f"ends in '{path.suffix}', a kind of file that is not read"
+    return "is no ordinary file (a pipe or a device)" if path.exists() else "is not in the folder"
 
 
 def _outside(folder: Path, files: list[Path]) -> list[str]:

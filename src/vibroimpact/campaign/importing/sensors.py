@@ -10,10 +10,11 @@ import numpy as np
 
 from vibroimpact.campaign.file import Channel
 from vibroimpact.campaign.force_kinds import BASE, FORCE
+from vibroimpact.signal_files.signals import Signal
 from vibroimpact.units import UnitError, si_factor
 
+from .raw_files import absence
 from .sidecar import DIRECTIONS, NAME, Record, Sensor, Sidecar
-from .signals import Signal
 
 NOWHERE = (np.nan, np.nan, np.nan)  # an acceleration of the base is that of no point
 
@@ -180,7 +181,7 @@ def _signal_of(
     for name in record.all_files():
         if name not in measured.found:
             measured.problems.append(
-                f"{place}: record file '{name}' is not in the folder; it has"
+                f"{place}: record file '{name}' {absence(measured.folder / name)}; it has"
                 f" {', '.join(measured.found)}"
             )
             return None
@@ -190,6 +191,13 @@ def _signal_of(
     ]
     of_role = [signal for signal in matches if signal.force == (sensor[1] == "force")]
     matches = of_role if len(of_role) == 1 else matches
+    left_out = {name: why for signal in known for name, why in signal.left_out.items()}
+    if not matches and wanted in left_out:
+        measured.problems.append(
+            f"{place}, {sensor[0]}: '{wanted}' of {', '.join(record.all_files())}"
+            f" {left_out[wanted]}: give it as many real samples, or name another with variable"
+        )
+        return None
     if len(matches) != 1:
         what = "is not" if not matches else f"is {len(matches)} times"
         measured.problems.append(

@@ -11,9 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
+from vibroimpact.signal_files.signals import ImportProblem, Signal, even_samples, whole_rate
 from vibroimpact.units import UnitError, si_factor
-
-from .signals import ImportProblem, Signal, even_samples, whole_rate
 
 TIME_RESPONSE, SHOCK = 1, 0  # function types that may hold time records
 KIND_OF_TYPE = {
@@ -161,7 +160,12 @@ def _signal(data, path, nodes, units):
     second = _second(data, place)
     if data["abscissa_spacing"] == 1:
         step, start = (data[key] * second for key in ("abscissa_inc", "abscissa_min"))
-        rate, note = whole_rate(1.0 / step) if SHORTEST_STEP < step < np.inf else None, ""
+        if not SHORTEST_STEP < step < np.inf:
+            raise ImportProblem(
+                f"{place}: its time step is {step:g} s: correct the abscissa increment of dataset"
+                " 58, or export it again"
+            )
+        rate, note = whole_rate(1.0 / step), ""
     else:
         time = np.asarray(data["x"], float) * second
         values, rate, note = even_samples(time, values, place)

@@ -133,11 +133,9 @@ def unit_force_psd(config, frequency):
         psd = line_force_psd(excitation, diameter, frequency)
         fine = np.linspace(*excitation.band_Hz, BAND_POINTS)
         return psd / np.trapezoid(line_force_psd(excitation, diameter, fine), fine)
-    values, rate = read_force(
-        excitation.file, excitation.variable, excitation.sampling_frequency_Hz
-    )
-    measured = segment_spectra(values, rate, config.spectra)
-    mean = psd_statistics(measured.values)[0][0] / np.mean(np.square(values))
+    force = read_force(excitation.file, excitation.variable, excitation.sampling_frequency_Hz)
+    measured = segment_spectra(force.values, force.rate, config.spectra)
+    mean = psd_statistics(measured.values)[0][0] / np.mean(np.square(force.values))
     return np.interp(frequency, measured.frequency, mean, left=0.0, right=0.0)
 
 

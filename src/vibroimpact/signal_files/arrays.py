@@ -28,6 +28,7 @@ class Arrays:
     attributes: of the file.
     note: how the file was read.
     lines (time,): line of the file that holds a sample, None where there are no lines.
+    left_out {name: why}: what else the file holds, in words that follow the name.
     """
 
     path: str | Path
@@ -37,6 +38,7 @@ class Arrays:
     attributes: dict[str, Any] = field(default_factory=dict)
     note: str = ""
     lines: np.ndarray | None = None
+    left_out: dict[str, str] = field(default_factory=dict)
 
 
 def signals_of_arrays(arrays: Arrays) -> list[Signal]:
@@ -60,9 +62,14 @@ def signals_of_arrays(arrays: Arrays) -> list[Signal]:
             if arrays.columns
             else f"{arrays.path}: holds no array of numbers: export the time histories"
         )
+    left_out = arrays.left_out | {
+        name: f"has {rows.shape[-1]} samples, the longest signal {longest}"
+        for name, rows in signals.items()
+        if rows.shape[-1] != longest
+    }
     found = []
     for name, rows in signals.items():
-        if rows.shape[-1] != longest:
+        if name in left_out:
             continue
         rate, notes, start = stated, [arrays.note], None
         if time is not None and time.size == longest:
@@ -82,6 +89,7 @@ def signals_of_arrays(arrays: Arrays) -> list[Signal]:
                     note="; ".join(filter(None, notes)),
                     start=start,
                     lines=arrays.lines,
+                    left_out=left_out,
                 )
             )
     return found

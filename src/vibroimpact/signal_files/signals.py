@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -51,6 +52,7 @@ class Signal:
     note: how the file was read and its values were changed.
     start: s, of the first sample; None where the file has no time.
     lines (time,): line of the file that holds a sample, None where the file has none.
+    left_out: {name: why} of what else the file holds, in words that follow the name.
     """
 
     name: str
@@ -67,6 +69,7 @@ class Signal:
     note: str = ""
     start: float | None = None
     lines: np.ndarray | None = None
+    left_out: Mapping[str, str] = field(default_factory=dict)
 
     def place(self, sample: int) -> str:
         """Return where a sample stands: "low.csv, line 38, column tip" or "low.mat, tip[38]"."""

@@ -29,4 +29,5 @@ def read_matlab(path: str | Path) -> list[Signal]:
         for name, values in found.items()
         if isinstance(values, np.ndarray) and values.dtype.kind in "fiu"
     }
-    return signals_of_arrays(Arrays(path, columns))
+    left_out = {name: "holds no real numbers" for name in found if name not in columns}
+    return signals_of_arrays(Arrays(path, columns, left_out=left_out))

@@ -1,0 +1,1 @@
+"""Recorded signals in files of other programs: CSV, MATLAB and netCDF, with units and sampling."""
