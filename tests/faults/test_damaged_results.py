@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 from vibroimpact.campaign.file import read_campaign
+from vibroimpact.config.stage_keys import answer_digest
 from vibroimpact.records import (
     RecordError,
     read_dataset,
@@ -24,7 +25,10 @@ def compare(study):
     names = ("table", "summary", "collapse", "equivalent", "dataset")
     outputs = {name: study.path(f"again_{name}") for name in names}
     tables = study.files("estimates", "csv")
-    study.run("consistency", {"model": study.path("model.nc"), "tables": tables}, outputs)
+    inputs = {"model": study.path("model.nc"), "tables": tables}
+    study.run(
+        "consistency", inputs, outputs, digest=answer_digest(study.config.model_dump(mode="json"))
+    )
     return read_table(outputs["table"])
 
 

@@ -24,6 +24,7 @@ SPIKE, FEW = 20.0, 3  # times all but a few samples
 ALONE = 0.05  # of a spike: what stands beside it
 UNRELATED = 0.05  # mean coherence: the force of another record leaves 0.025, rattling 0.25 or more
 ENOUGH = 4.0  # lines on which two records both follow their force
+FOLLOWED = 0.1  # product of the coherences of a line whose gains are compared
 # Mean cosine of the phase: to every other record, and to one of them. Contact alone leaves 0.13 or
 # more to the nearest record, and -0.59 at worst to the farthest.
 TURNED, OPPOSITE = -0.3, -0.6
@@ -177,9 +178,10 @@ class _Pair:
         for channel in self.compared:
             ratio = np.log(np.maximum(np.abs(self.h1[channel]), tiny))
             ratio -= np.log(np.maximum(np.abs(self.other_h1[channel]), tiny))
-            followed = self.weights(channel, channel) > 0.1
+            followed = self.weights(channel, channel) > FOLLOWED
             own, other = self.logarithms
-            found[channel] = float(np.median(ratio[followed]) + own[channel] - other[channel])
+            if followed.any():
+                found[channel] = float(np.median(ratio[followed]) + own[channel] - other[channel])
         return found
 
     def apart(self, channel: int) -> float:
