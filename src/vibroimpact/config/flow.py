@@ -16,26 +16,17 @@ from .quantities import (
     Range,
     Section,
     Unit,
-    Vector,
 )
-from .turbulence import Fluid_density, Velocity
+from .turbulence import Ends, Fluid_density, Velocity
 
 Constant = Annotated[Number, Range("Connors' constant is about 2.4 to 10", above=0, at_most=100)]
 Coefficient = Annotated[Number, Range("a coefficient of the force", at_least=-1e4, at_most=1e4)]
 Positive_number = Annotated[Number, Range("give a positive number", above=0, at_most=1e4)]
 
 
-class FlowStretch(Section):
+class FlowStretch(Ends):
     """A stretch of the tube with a flow of its own."""
 
-    from_m: Vector = Field(
-        description="Position of one end of the stretch, within 5 mm of the centreline.",
-        examples=[[0.0, 0.0, 0.8]],
-    )
-    to_m: Vector = Field(
-        description="Position of the other end, within 5 mm of the centreline.",
-        examples=[[0.0, 0.0, 1.6]],
-    )
     velocity_factor: Positive_factor = Field(
         1.0,
         description="Velocity there over flow.velocity_m_per_s. A profile is cut into stretches.",

@@ -38,8 +38,8 @@ VELOCITY = (
 DENSITY = "Density of the fluid outside the tube."
 
 
-class Stretch(Section):
-    """A stretch of the tube that the flow acts on."""
+class Ends(Section):
+    """The two ends of a stretch of the tube."""
 
     from_m: Vector = Field(
         description="Position of one end of the stretch, within 5 mm of the centreline.",
@@ -49,6 +49,11 @@ class Stretch(Section):
         description="Position of the other end, within 5 mm of the centreline.",
         examples=[[0.0, 0.0, 1.6]],
     )
+
+
+class Stretch(Ends):
+    """A stretch of the tube that the flow acts on."""
+
     factor: Positive_factor = Field(
         1.0,
         description="Force per length on this stretch over that of the spectrum. Where the flow has"

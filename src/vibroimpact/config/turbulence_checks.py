@@ -14,10 +14,9 @@ from vibroimpact.geometry.centreline import Centreline, build_centreline
 from vibroimpact.geometry.sections import outer_width
 
 from .excitation import Excitation
-from .flow import FlowStretch
 from .geometry_checks import Tube, path_directions, points_on_the_tube
 from .structure import Structure
-from .turbulence import Stretch
+from .turbulence import Ends
 
 Problems = Iterator[tuple[str, Any, str]]
 
@@ -109,14 +108,14 @@ def _centreline(structure: Tube) -> Centreline | None:
     return None if any(path_directions(structure)) else build_centreline(structure)
 
 
-def _off_the_tube(structure: Tube, stretch: Stretch | FlowStretch, place: str) -> Problems:
+def _off_the_tube(structure: Tube, stretch: Ends, place: str) -> Problems:
     """Yield a problem for each end of a stretch that is off the tube."""
     for key in ("from_m", "to_m"):
         for _, value, text in points_on_the_tube(structure, {key: getattr(stretch, key)}):
             yield f"{place}.{key}", value, text
 
 
-def _ends(line: Centreline, stretch: Stretch | FlowStretch) -> tuple[float, float]:
+def _ends(line: Centreline, stretch: Ends) -> tuple[float, float]:
     """Return the arc lengths in m of the ends of a stretch, ascending."""
     begin, end = sorted(line.locate(at, "stretch") for at in (stretch.from_m, stretch.to_m))
     return begin, end
