@@ -25,12 +25,12 @@ from vibroimpact.figures.interactive.study_plots import MOST_FRAMES, shown_loads
 from vibroimpact.records import read_record, write_record
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.reports.captions import CATEGORIES, CaptionError, read_caption
+from vibroimpact.reports.centred_wear import centred_sentence
 from vibroimpact.reports.equivalent_answer import Answer, Value
 from vibroimpact.reports.study_statistics import study_statistics
 from vibroimpact.reports.study_tables import Table, answer_table, reason_table
 from vibroimpact.reports.study_words import (
     answer_in_words,
-    centred_sentence,
     contact_sentences,
     headline,
     run_sentence,

@@ -7,11 +7,12 @@ from typing import Any, NamedTuple
 
 from vibroimpact.figures.study.linear_limits import contact_stiffness, shown_band
 from vibroimpact.figures.study.psd_table import driven_sensor
+from vibroimpact.reports.centred_wear import centred_in
 from vibroimpact.reports.equivalent_answer import ALL_SUPPORTS, with_places
 from vibroimpact.reports.study_content import StudyContent
 from vibroimpact.reports.study_page import PagePlots
 from vibroimpact.reports.study_tables import spread_evenly
-from vibroimpact.reports.study_words import centred_in, load_label
+from vibroimpact.reports.study_words import load_label
 from vibroimpact.spectra.welch import driven_axis
 
 from .equivalent import equivalent_plots, places_of

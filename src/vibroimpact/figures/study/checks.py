@@ -21,7 +21,7 @@ from vibroimpact.figures.style import (
 )
 from vibroimpact.geometry.sections import outer_width
 from vibroimpact.integration.energy_limit import ENERGY_LIMIT
-from vibroimpact.reports.study_words import centred_sentence
+from vibroimpact.reports.centred_wear import centred_sentence
 from vibroimpact.study.cases import case_from_id
 
 from .cases_of_gap import CasesOnDemand
