@@ -45,6 +45,9 @@ peers run
 # The ratios of the page; the CSV file has those to the other batches too.
 COMPARED = (ONE_RUN, BATCH.format(8))
 
+OWN_CELL = """CPU s per simulated s; nanoseconds per step of Newmark; share of the FMA peak.
+"""
+
 GROWTH = {
     "modes": "free modes added to the residual vectors of the contacts",
     "contact points": "points of the two plates together, free modes alone",
@@ -71,7 +74,8 @@ def write_page(path, rows, growth, peers, absent, machine, figure, work_precisio
         "## Machine\n",
         _table(("what", "on this machine"), machine.items()),
     ]
-    parts += ["## Ours\n", _own_times(rows), "## The peers\n", _ratios(rows)]
+    parts += ["## Ours\n", OWN_CELL, _own_times(rows), "## The peers\n"]
+    parts += [_ratios(rows, quantity) for quantity in COMPARED]
     parts += ["## Growth\n", BATCH_OF_8, _growth(growth), _cores(rows)] if growth else []
     parts += [work_precision] if work_precision else []
     parts += ["## What each peer solves, and whether it agrees\n", *_agreement(peers)]
@@ -99,61 +103,44 @@ def _ratio(row):
 
 
 def _own_times(rows):
-    """Return the table of our times: s per simulated s, ns per step, share of the FMA peak."""
+    """Return the table of ours: CPU s per simulated s by case, ns per step, share of the peak."""
+    cases = list(dict.fromkeys(row["case"] for row in rows if row["unit"] == SECONDS))
     lines = []
-    for case, quantity in dict.fromkeys((row["case"], row["quantity"]) for row in rows):
-        found = [row for row in rows if (row["case"], row["quantity"]) == (case, quantity)]
-        costs, steps, peak = (
-            [row for row in found if row["unit"] == SECONDS],
-            [row for row in found if row["unit"] == NANOSECONDS and row["peer"] != PEAK],
-            [row for row in found if row["peer"] == PEAK],
-        )
-        if costs:
-            share = f"{100.0 * peak[0]['ratio_median']:.2g} %" if peak else ""
-            lines.append(
-                (
-                    case,
-                    _short(quantity),
-                    _ours(costs),
-                    f"{_ours(steps):.0f}" if steps else "",
-                    share,
-                )
-            )
-    header = ("case", "runs", "CPU s per simulated s", "ns per step of Newmark", "of the FMA peak")
-    return _table(header, _without_repeats(lines))
+    for quantity in dict.fromkeys(row["quantity"] for row in rows if row["unit"] == SECONDS):
+        found = {
+            case: [row for row in rows if (row["case"], row["quantity"]) == (case, quantity)]
+            for case in cases
+        }
+        lines.append((_short(quantity), *(_own_time(found[case]) for case in cases)))
+    return _table(("runs", *cases), lines)
 
 
-def _ratios(rows):
-    """Return the table of the peers: CPU seconds, and ratios to ours by how ours ran."""
-    rows = [row for row in rows if row["unit"] == SECONDS and row["quantity"] in COMPARED]
-    quantities = list(dict.fromkeys(row["quantity"] for row in rows))
-    lines = []
-    for case, peer in dict.fromkeys((row["case"], row["peer"]) for row in rows):
-        found = {row["quantity"]: row for row in rows if (row["case"], row["peer"]) == (case, peer)}
-        cost = next(iter(found.values()))["peer_median"]
-        ratios = [_ratio(found[name]) if name in found else "" for name in quantities]
-        lines.append((case, peer, cost, *ratios))
-    header = (
-        "case",
-        "code",
-        "CPU s per simulated s",
-        *(f"/ ours, {_short(name)}" for name in quantities),
-    )
-    return _table(header, _without_repeats(lines))
+def _own_time(rows):
+    """Return the cell of a case: s per simulated s, ns per step, share of the FMA peak."""
+    costs = [row["ours_median"] for row in rows if row["unit"] == SECONDS]
+    steps = [
+        row["ours_median"] for row in rows if row["unit"] == NANOSECONDS and row["peer"] != PEAK
+    ]
+    shares = [100.0 * row["ratio_median"] for row in rows if row["peer"] == PEAK]
+    parts = [three_digits(float(np.median(costs)))] if costs else []
+    parts += [f"{np.median(steps):.0f}"] if steps else []
+    parts += [f"{share:.2g} %" for share in shares]
+    return ", ".join(parts)
+
+
+def _ratios(rows, quantity):
+    """Return the table of the peers: CPU time over ours by case, for one way that ours ran."""
+    rows = [row for row in rows if row["unit"] == SECONDS and row["quantity"] == quantity]
+    cases = list(dict.fromkeys(row["case"] for row in rows))
+    found = {(row["peer"], row["case"]): _ratio(row) for row in rows}
+    peers = dict.fromkeys(row["peer"] for row in rows)
+    lines = [(peer, *(found.get((peer, case), "") for case in cases)) for peer in peers]
+    return _table((f"/ ours, {_short(quantity)}", *cases), lines)
 
 
 def _short(quantity):
     """Return how ours ran; every time is that of one run."""
     return quantity.removesuffix(", per run")
-
-
-def _without_repeats(lines):
-    """Return lines with a first cell only where it differs from the one above."""
-    above = ["", *(line[0] for line in lines)]
-    return [
-        ("" if line[0] == case else line[0], *line[1:])
-        for line, case in zip(lines, above, strict=False)
-    ]
 
 
 def _growth(growth):
@@ -204,8 +191,3 @@ def _agreement(peers):
     )
     yield "Largest relative difference from ours over the cases:\n"
     yield _table(("peer", "cases", *limits, "agrees"), lines)
-
-
-def _ours(rows):
-    """Return the middle of the medians of ours beside each peer."""
-    return float(np.median([row["ours_median"] for row in rows]))
