@@ -74,8 +74,8 @@ judges: $(READY_JUDGES) ## tests against other codes, in an environment of their
 	.venv-judges/bin/python -m pytest tests/judges -rs
 
 benchmark: $(READY_BENCHMARK) ## speed beside other codes: writes docs/performance.md
-	.venv-benchmark/bin/python -m benchmarks.work_precision
-	.venv-benchmark/bin/python -m benchmarks
+	.venv-benchmark/bin/python -m evidence.benchmarks.work_precision
+	.venv-benchmark/bin/python -m evidence.benchmarks
 
 docs: $(READY_DOCS) ## the documentation site: docs/_build/html/index.html
 	.venv-docs/bin/sphinx-build -q -W --keep-going -b html docs docs/_build/html
