@@ -1,0 +1,193 @@
+"""docs/performance.md: the tables of a benchmark in words and columns, written anew at every
+run.
+"""
+
+import numpy as np
+
+from evidence.benchmarks.check import CHECK_S, FIRST_IMPACTS_S, NAMES
+from evidence.benchmarks.pairs import BATCH, ONE_RUN, PEAK
+from evidence.benchmarks.problem import BAND_HZ, GAP_M, LOAD_N, RATE, SMALL_BASIS
+from evidence.benchmarks.table import NANOSECONDS, SECONDS, three_digits, typed
+
+SMALL_TO_HZ = SMALL_BASIS["basis.free_modes_to_Hz"]
+
+INTRODUCTION = f"""# Performance
+
+Written by `make benchmark`; do not edit. All numbers, with smallest and largest, are in
+`results/benchmark/`: `benchmark.csv`, `growth.csv`, `peers.csv`, `machine.csv`.
+
+The problem is the stand-in tube under a force in {BAND_HZ[0]:g} to {BAND_HZ[1]:g} Hz at 45 \
+degrees of the bend, with two
+plates of five contact points and a gap of {GAP_M * 1e3:.3f} mm. At {LOAD_N:g} N RMS, the highest \
+load of the study, a
+plate bears a force half of the time. "Modes" are free modes and residual vectors of the contacts:
+99 in the study, 61 with free modes to {SMALL_TO_HZ:g} Hz. Residual vectors reach 130 kHz and set \
+the step
+of every explicit method, so one case has free modes alone.
+
+- **Agreement first.** Before a code is timed, its displacement at three sensors must agree with \
+ours:
+  without contact ({CHECK_S:g} s), over the first impacts ({FIRST_IMPACTS_S:g} s), and in RMS. \
+Obstacles are off the
+  axis, so that both directions touch.
+- **Times** are CPU time of one core without compilation, of a batch per run. Ours include set-up,
+  output filter, statistics, energies and records; the peers keep three displacements.
+- **Ratios**, median (smallest to largest), come from runs that alternate in one process. Slow \
+peers run
+  a short stretch with less contact, which favours them. Absolute times hold for this machine.
+- **Batches.** Eight runs share a 512-bit vector; one run costs nearly as much. The plain loop, and
+  JAX without its batch, take one run at a time.
+- **Step.** Ours, the plain loop, JAX and Exudyn use Newmark at {RATE} steps per second; the study
+  uses [another step](#what-a-step-is-worth).
+- **FMA peak**: the arithmetic of the step alone at the peak rate of the core.
+"""
+
+# The ratios of the page; the CSV file has those to the other batches too.
+COMPARED = (ONE_RUN, BATCH.format(8))
+
+OWN_CELL = """CPU s per simulated s; nanoseconds per step of Newmark; share of the FMA peak.
+"""
+
+GROWTH = {
+    "modes": "free modes added to the residual vectors of the contacts",
+    "contact points": "points of the two plates together, free modes alone",
+    "supports": "five points each, free modes alone",
+    "runs side by side": "61 modes",
+    "duration, s": "set-up and run-out of the filter weigh on short records",
+    "processes": "wall-clock time, a batch of 8 and a core each",
+}
+
+BATCH_OF_8 = "Batch of 8, 20 N, unless the number of runs is varied.\n"
+
+
+def write_page(path, rows, growth, peers, absent, machine, figure, work_precision=""):
+    """Write the page: rows (table.COLUMNS), growth (table.GROWTH_COLUMNS), peers
+    (table.PEER_COLUMNS), sentences, {what: value}, figure's path.
+
+    Rows may come from their files, with text for numbers. work_precision: that section
+    (work_precision_page.section).
+    """
+    rows, growth, peers = (typed(each) for each in (rows, growth, peers))
+    parts = [
+        INTRODUCTION,
+        f"![Ratios of CPU time]({figure})\n",
+        "## Machine\n",
+        _table(("what", "on this machine"), machine.items()),
+    ]
+    parts += ["## Ours\n", OWN_CELL, _own_times(rows), "## The peers\n"]
+    parts += [_ratios(rows, quantity) for quantity in COMPARED]
+    parts += ["## Growth\n", BATCH_OF_8, _growth(growth), _cores(rows)] if growth else []
+    parts += [work_precision] if work_precision else []
+    parts += ["## What each peer solves, and whether it agrees\n", *_agreement(peers)]
+    parts += (
+        ["Not measured:\n\n" + "".join(f"- {sentence}\n" for sentence in absent)] if absent else []
+    )
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("\n".join(part for part in parts if part))
+
+
+def _table(header, rows):
+    """Return a Markdown table; cells are text or numbers (three digits)."""
+    lines = [header, ["---"] * len(header), *rows]
+    return "".join("| " + " | ".join(_cell(cell) for cell in line) + " |\n" for line in lines)
+
+
+def _cell(value):
+    return three_digits(value) if isinstance(value, float) else str(value)
+
+
+def _ratio(row):
+    """Return "median (min to max)"."""
+    middle, low, high = (three_digits(row[f"ratio_{name}"]) for name in ("median", "min", "max"))
+    return f"{middle} ({low} to {high})"
+
+
+def _own_times(rows):
+    """Return the table of ours: CPU s per simulated s by case, ns per step, share of the peak."""
+    cases = list(dict.fromkeys(row["case"] for row in rows if row["unit"] == SECONDS))
+    lines = []
+    for quantity in dict.fromkeys(row["quantity"] for row in rows if row["unit"] == SECONDS):
+        found = {
+            case: [row for row in rows if (row["case"], row["quantity"]) == (case, quantity)]
+            for case in cases
+        }
+        lines.append((_short(quantity), *(_own_time(found[case]) for case in cases)))
+    return _table(("runs", *cases), lines)
+
+
+def _own_time(rows):
+    """Return the cell of a case: s per simulated s, ns per step, share of the FMA peak."""
+    costs = [row["ours_median"] for row in rows if row["unit"] == SECONDS]
+    steps = [
+        row["ours_median"] for row in rows if row["unit"] == NANOSECONDS and row["peer"] != PEAK
+    ]
+    shares = [100.0 * row["ratio_median"] for row in rows if row["peer"] == PEAK]
+    parts = [three_digits(float(np.median(costs)))] if costs else []
+    parts += [f"{np.median(steps):.0f}"] if steps else []
+    parts += [f"{share:.2g} %" for share in shares]
+    return ", ".join(parts)
+
+
+def _ratios(rows, quantity):
+    """Return the table of the peers: CPU time over ours by case, for one way that ours ran."""
+    rows = [row for row in rows if row["unit"] == SECONDS and row["quantity"] == quantity]
+    cases = list(dict.fromkeys(row["case"] for row in rows))
+    found = {(row["peer"], row["case"]): _ratio(row) for row in rows}
+    peers = dict.fromkeys(row["peer"] for row in rows)
+    lines = [(peer, *(found.get((peer, case), "") for case in cases)) for peer in peers]
+    return _table((f"/ ours, {_short(quantity)}", *cases), lines)
+
+
+def _short(quantity):
+    """Return how ours ran; every time is that of one run."""
+    return quantity.removesuffix(", per run")
+
+
+def _growth(growth):
+    """Return the table of all curves, one in a line."""
+    curves = {}
+    for row in growth:
+        curves.setdefault(row["varied"], []).append(row)
+    lines = [
+        (
+            f"{varied}: {GROWTH[varied]}",
+            ", ".join(f"{point['value']:g}" for point in points),
+            ", ".join(three_digits(point["ns_per_step_median"]) for point in points),
+        )
+        for varied, points in curves.items()
+    ]
+    return _table(("varied", "values", "ns per step and run"), lines)
+
+
+def _cores(rows):
+    """Return the sentence of two processes against one."""
+    return "".join(
+        f"Two processes on two cores do {_ratio(row)} times the work of one.\n"
+        for row in rows
+        if row["peer"] == "ours, one process"
+    )
+
+
+def _agreement(peers):
+    """Yield a paragraph of what the peers solve and a table of their largest differences."""
+    alike, found = {}, {}
+    for row in peers:
+        alike.setdefault(row["note"], {})[f"{row['peer']} {row['version']}"] = None
+        found.setdefault(row["peer"], []).append(row)
+    yield "".join(f"- {'; '.join(codes)}: {note}.\n" for note, codes in alike.items())
+    lines = [
+        (
+            peer,
+            str(len(cases)),
+            *(f"{max(row[name] for row in cases):.0e}" for name in NAMES),
+            "; ".join(dict.fromkeys(row["failure"] or row["agrees"] for row in cases)),
+        )
+        for peer, cases in found.items()
+    ]
+    limits = (
+        [f"{name.replace('_', ' ')} (to {peers[0][f'{name}_tolerance']:.0e})" for name in NAMES]
+        if peers
+        else NAMES
+    )
+    yield "Largest relative difference from ours over the cases:\n"
+    yield _table(("peer", "cases", *limits, "agrees"), lines)
