@@ -12,9 +12,9 @@ ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "reliability.md"
 RELIABILITY = pytest.StashKey[list]()
 HEADERS = {
-    "faults": ("fault", "what happens"),
+    "faults": ("fault", "outcome"),
     "inputs": ("input", "tried", "refused with a sentence", "right"),
-    "scale": ("what", "measured"),
+    "scale": ("quantity", "measured"),
 }
 TITLES = {
     "faults": "Faults",
@@ -26,7 +26,7 @@ INTRODUCTION = """# Reliability
 
 <!-- Written by `make reliability`: do not edit. -->
 
-Every row is stated by a test that passed; rows with one outcome stand together.
+Every row is stated by a test that passed; faults with one outcome share a row.
 
 - **Programs.** A profile of Snakemake is a program, and so is a configuration with `__use_yte__`
   under `--workflow-profile none`: Snakemake runs it before this package reads it. Run

@@ -38,7 +38,7 @@ peers run
 - **Batches.** Eight runs share a 512-bit vector; one run costs nearly as much. The plain loop, and
   JAX without its batch, take one run at a time.
 - **Step.** Ours, the plain loop, JAX and Exudyn use Newmark at {RATE} steps per second; the study
-  uses [another step](#what-a-step-is-worth).
+  uses [another step](#choice-of-the-step).
 - **FMA peak**: the arithmetic of the step alone at the peak rate of the core.
 """
 
@@ -72,13 +72,13 @@ def write_page(path, rows, growth, peers, absent, machine, figure, work_precisio
         INTRODUCTION,
         f"![Ratios of CPU time]({figure})\n",
         "## Machine\n",
-        _table(("what", "on this machine"), machine.items()),
+        _table(("property", "this machine"), machine.items()),
     ]
     parts += ["## Ours\n", OWN_CELL, _own_times(rows), "## The peers\n"]
     parts += [_ratios(rows, quantity) for quantity in COMPARED]
     parts += ["## Growth\n", BATCH_OF_8, _growth(growth), _cores(rows)] if growth else []
     parts += [work_precision] if work_precision else []
-    parts += ["## What each peer solves, and whether it agrees\n", *_agreement(peers)]
+    parts += ["## Models and agreement of the peers\n", *_agreement(peers)]
     parts += (
         ["Not measured:\n\n" + "".join(f"- {sentence}\n" for sentence in absent)] if absent else []
     )

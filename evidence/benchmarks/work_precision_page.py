@@ -2,7 +2,7 @@
 
 from evidence.benchmarks.work_precision_figure import UNSEEN
 
-TEXT = f"""## What a step is worth
+TEXT = f"""## Choice of the step
 
 From `results/benchmark/work_precision.csv` (`python -m evidence.benchmarks.work_precision`, part of
 `make benchmark`). Both schemes cost the same per step.
