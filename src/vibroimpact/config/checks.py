@@ -350,6 +350,7 @@ POINT_CHECKS: tuple[Callable[..., Problems], ...] = (
 CHECKS: tuple[Callable[..., Problems], ...] = (
     *TUBE_CHECKS,
     *POINT_CHECKS,
+    section_checks.wall_that_wears,
     names.chain_names,
     geometry_checks.support_lists,
     geometry_checks.offsets,

@@ -13,7 +13,8 @@ from vibroimpact.geometry.centreline import SAME_PLACE_M
 from vibroimpact.geometry.sections import ROUND, outer_width, section_properties
 
 from .geometry_checks import centreline_of, off_the_tube
-from .structure import Path, UTube
+from .structure import Path, Structure, UTube
+from .wear import Wear
 
 Problems = Iterator[tuple[str, Any, str]]
 Tube = UTube | Path
@@ -30,6 +31,12 @@ def wall(structure: Tube) -> Problems:
             section.wall_thickness_m,
             f"must be below half the outer diameter {section.outer_diameter_m}: both in metres?",
         )
+
+
+def wall_that_wears(structure: Structure, wear: Wear) -> Problems:
+    """Yield a problem unless the structure has the wall of a tube."""
+    if getattr(getattr(structure, "section", None), "kind", "none") != "tube":
+        yield "wear", "...", "is of the wall of a tube, this structure has none: leave it out"
 
 
 def axes_of_the_section(structure: Tube) -> Problems:
