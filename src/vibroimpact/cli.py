@@ -168,9 +168,11 @@ def _parser() -> argparse.ArgumentParser:
     wear = commands.add_parser(
         "wear",
         help="print the depth of wear at the supports of a finished study",
-        description="Print how deep each support wears the wall of the tube, from the work rates of"
-        " a finished study and wear coefficients: Archard's law, and the shape of the support. One"
-        " line per load and gap, for the support that wears most; --csv writes all.",
+        description="Print how deep each land of the supports wears the wall of the tube, from the"
+        " work rates of a finished study: Archard's law or the slowing law EDF_MZ, and the shape of"
+        " the support. One line per load and gap, for the land that wears deepest, as a range over"
+        " the laws; --csv writes all. The section wear of the study's configuration gives what no"
+        " argument gives.",
     )
     wear_command.add_arguments(wear)
     for name, command, what in (

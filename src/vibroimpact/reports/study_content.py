@@ -152,7 +152,7 @@ class StudyContent:
         """Return contact, wear and stress in sentences."""
         return [
             *contact_sentences(self.config, self.statistics),
-            *wear_sentences(self.worn, self.config),
+            *wear_sentences(self.worn, self.config, self.unit),
         ]
 
     def at_gap(self, gap_m: float) -> str:

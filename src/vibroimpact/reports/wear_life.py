@@ -7,23 +7,25 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import Any
 
-from vibroimpact.wear.life import WearRow, deepest
+from vibroimpact.wear.life import WearRow, deepest, wear_rank
 
 from .number_text import digits
 from .study_tables import Table, span
 
 
-def wear_sentences(rows: Sequence[WearRow], config: Any) -> list[str]:
-    """Return the deepest wear of a study in a sentence, [] without wear."""
+def wear_sentences(rows: Sequence[WearRow], config: Any, unit: str) -> list[str]:
+    """Return the deepest wear of a study in sentences, [] without wear. unit: of the load."""
     if not rows:
         return []
-    worst = max(deepest(rows), key=lambda own: max(row.depth_m for row in own))
+    worst = max(deepest(rows), key=wear_rank)
     first, years = worst[0], config.wear.years
     return [
         f"Deepest wear after {digits(years)} years: {_range(worst, 'depth_m', 1e6)} µm, "
         f"{_range(worst, 'wall_share', 100.0)} % of the wall, at land {first.land} of"
-        f" {first.support}, {digits(first.load_rms_N)} N RMS and a gap of"
-        f" {digits(1e3 * first.gap_m)} mm, over {len(worst)} laws of wear."
+        f" {first.support}, {digits(first.load_rms_N)} {unit} RMS and a gap of"
+        f" {digits(1e3 * first.gap_m)} mm. {digits(100.0 * config.wear.wall_limit)} % of the wall"
+        f" is reached after {_range(worst, 'years_to_limit', 1.0)} years. The ranges are over"
+        f" {len(worst)} laws of wear."
     ]
 
 
@@ -63,5 +65,5 @@ def _range(rows: Sequence[WearRow], name: str, factor: float) -> str:
     values = [factor * getattr(row, name) for row in rows]
     low, high = min(values), max(values)
     if math.isinf(high):
-        return "never" if math.isinf(low) else f"from {digits(low)}"
+        return "never" if math.isinf(low) else f"at least {digits(low)}"
     return digits(low) if low == high else span(low, high)

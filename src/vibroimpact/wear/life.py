@@ -189,10 +189,15 @@ def _gap_factor(support: Support) -> float:
 
 
 def deepest(rows: Sequence[WearRow]) -> Iterator[list[WearRow]]:
-    """Yield for each gap and load the rows, one per law, of the land that wears deepest."""
+    """Yield for each gap and load the rows, one per law, of the land that wears most."""
     cases: dict[tuple[float, float], dict[tuple[str, int], list[WearRow]]] = {}
     for row in rows:
         places = cases.setdefault((row.gap_m, row.load_rms_N), {})
         places.setdefault((row.support, row.land), []).append(row)
     for places in cases.values():
-        yield max(places.values(), key=lambda own: max(row.depth_m for row in own))
+        yield max(places.values(), key=wear_rank)
+
+
+def wear_rank(rows: Sequence[WearRow]) -> tuple[float, float]:
+    """Return what ranks the rows of a land: the depth, then how soon the limit is reached."""
+    return max(row.depth_m for row in rows), -min(row.years_to_limit for row in rows)
