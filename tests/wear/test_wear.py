@@ -1,6 +1,8 @@
 """Wear depth against published and derived values, and the wear life of a study."""
 
 import csv
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ import vibroimpact as vi
 from tests.tiny_study import tiny_values
 from vibroimpact.cli import main
 from vibroimpact.config.wear import Wear
+from vibroimpact.reports.wear_life import wear_sentences, wear_table
 from vibroimpact.wear.depth import (
     YEAR_S,
     WornShape,
@@ -22,6 +25,7 @@ from vibroimpact.wear.depth import (
 from vibroimpact.wear.laws import Archard, EdfMz
 from vibroimpact.wear.life import wear_life, worn_life
 
+ROOT = Path(__file__).parents[2]
 RATES = {4.0: (0.0, 1.0e-5), 20.0: (2.0e-3, 1.0e-3)}  # W at the two supports, by load
 
 
@@ -223,3 +227,25 @@ def test_a_growing_gap_takes_the_work_of_the_larger_gap(results):
         if old.volume_m3
     ]
     assert 1.2 < max(ratios) < 2.0 and ratios[-1] == pytest.approx(1.0, rel=1e-9)
+
+
+def test_the_page_tells_the_wear_life(results):
+    """A sentence with the deepest land, and a table with a row per load, support and land."""
+    rows = wear_life(results, Wear(coefficient_m2_per_N=(1e-15, 1e-14)))
+    config = SimpleNamespace(wear=Wear(years=30.0))
+    (sentence,) = wear_sentences(rows, config, "N")
+    assert f"at land 1 of {rows[0].support}, 20 N RMS" in sentence and "30 years" in sentence
+    table = wear_table(rows, 1e-4, [20.0], "N")
+    assert [row[1:4] for row in table.rows] == [
+        (rows[0].support, "1", "2"),
+        (rows[2].support, "1", "1"),
+    ]
+    assert " to " in table.rows[0][4] and table.rows[0][4].split(" to ")[0] in sentence
+    idle = wear_table(rows, 1e-4, [4.0], "N").rows[0]
+    assert idle[4:] == ("0", "0", "never") and wear_sentences([], config, "N") == []
+
+
+def test_only_a_tube_wears():
+    config = yaml.safe_load((ROOT / "config/examples/mass_between_stops.yaml").read_text())
+    with pytest.raises(vi.ConfigError, match="wear = .* is of the wall of a tube"):
+        vi.check_config(config | {"wear": {}}, "a mass")
