@@ -49,6 +49,7 @@ PACKAGES = (
     "campaign",
     "study",
     "equivalent_support",
+    "contact_export",
     "effects",
     "wear",
     "verdict",

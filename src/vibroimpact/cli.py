@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from vibroimpact import __version__, stability_command
+from vibroimpact.contact_export import command as contact_command
 from vibroimpact.diagnosis import diagnose_command, supports_command
 from vibroimpact.equivalent_support.command import add_arguments
 from vibroimpact.wear import command as wear_command
@@ -175,6 +176,15 @@ def _parser() -> argparse.ArgumentParser:
         " argument gives.",
     )
     wear_command.add_arguments(wear)
+    contact = commands.add_parser(
+        "contact",
+        help="write the contact of the supports for another finite-element program",
+        description="Write gaps and contact stiffnesses of the supports of a configuration as"
+        " nonlinear elements of another program, at a gap of the case. For the equivalent linear"
+        " springs see `vibroimpact equivalent --export`. The exit code is 1 where a law is left"
+        " out.",
+    )
+    contact_command.add_arguments(contact)
     for name, command, what in (
         ("schema", _schema, "print the JSON schema of a study configuration"),
         ("reference", _reference, "print the reference of every configuration key as Markdown"),
