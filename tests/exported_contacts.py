@@ -185,37 +185,3 @@ def code_aster(text, places):
 
     force.terms = terms
     return force
-
-
-def nastran(text):
-    """Large-field cards; the gap closes when its first grid moves along the first axis by U0."""
-    cards, names, name = [], [], None
-    for line in text.splitlines():
-        if line.startswith("$"):
-            name = line[2:]
-            continue
-        fields = [line[first : first + 16].strip() for first in range(8, 72, 16)]
-        if line[:8].strip() == "*":
-            cards[-1][1].extend(fields)
-        else:
-            cards.append((line[:8].strip().rstrip("*"), fields))
-            names.append(name)
-    found = {kind: {} for kind in ("GRID", "CORD2R", "PGAP")}
-    for kind, fields in cards:
-        found.setdefault(kind, {})[fields[0]] = fields[1:]
-    held = {fields[2] for kind, fields in cards if kind == "SPC1"}
-    gaps = []
-    for (kind, fields), name in zip(cards, names, strict=True):
-        if kind == "CGAP":
-            _, law, tube, ground, _, _, _, system = fields
-            assert found["GRID"][tube][1:4] == found["GRID"][ground][1:4]
-            assert ground in held and tube not in held
-            origin, _, x = np.array(found["CORD2R"][system][1:10], dtype=float).reshape(3, 3)
-            opening, preload, stiffness = map(float, found["PGAP"][law][:3])
-            assert preload == 0.0
-            gaps.append((name, (x - origin) / np.linalg.norm(x - origin), opening, stiffness))
-
-    def force(point, u):
-        return sum(normal_force(*law, u) for name, *law in gaps if name == point)
-
-    return force

@@ -3,8 +3,7 @@
 A flat land is a CARTESIAN connector whose first axis is the normal, a round hole a RADIAL-THRUST
 connector round the tube's axis: force over displacement is 0 up to the gap, then rises with the
 contact stiffness. Source: Abaqus, connection types CARTESIAN and RADIAL-THRUST, *CONNECTOR SECTION
-and *CONNECTOR ELASTICITY. The tube support elements ITSUNI and ITSCYL are not used: they exist in
-Abaqus/Standard alone.
+and *CONNECTOR ELASTICITY.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-FORMATS = ("abaqus", "opensees", "code_aster", "nastran")
+FORMATS = ("abaqus", "opensees", "code_aster")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from vibroimpact.equivalent_support.answer import EquivalentError
 from vibroimpact.equivalent_support.export_formats.unit_system import UnitSystem, unit_system
 
-from . import abaqus, code_aster, nastran, opensees
+from . import abaqus, code_aster, opensees
 from .points import ContactSet
 
 # format -> (its text, laws that it does not have)
@@ -16,7 +16,6 @@ FORMATS: dict[str, tuple[Callable[[ContactSet, UnitSystem, int], str], tuple[str
     "abaqus": (abaqus.text, ("damping", "friction")),
     "opensees": (opensees.text, ("damping", "friction")),
     "code_aster": (code_aster.text, ()),
-    "nastran": (nastran.text, ("damping",)),
 }
 FIRST_NUMBER = 900001  # above the numbers of most models
 

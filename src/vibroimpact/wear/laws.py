@@ -53,32 +53,20 @@ class EdfMz:
     name: str = "EDF_MZ"
     coefficient = None
 
-    def volume(self, power: np.ndarray | float, time: np.ndarray | float) -> np.ndarray:
-        """Return the volumes in m³ that powers in W wear away in times in s."""
-        rate, final = self._rates(power)
-        return rate * self._effective(np.asarray(time, dtype=float), final)
-
     def seconds(self, volume: np.ndarray, power: np.ndarray) -> np.ndarray:
         """Return the times in s in which powers in W wear volumes in m³ away, inf without power."""
-        rate, final = self._rates(power)
+        rate = self.initial * np.asarray(power, dtype=float) ** self.exponent
+        final = self.final_rate / np.maximum(rate, self.final_rate)  # x
         with np.errstate(divide="ignore", invalid="ignore"):
             wanted = np.where(volume > 0.0, volume / rate, 0.0)
         # x t is below the bracket, and t above it.
         low, high = wanted, wanted / final
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
-            late = self._effective(middle, final) > wanted
+            decay = -np.expm1(-self.slowing * middle) / self.slowing
+            late = final * middle + (1.0 - final) * decay > wanted
             low, high = np.where(late, low, middle), np.where(late, middle, high)
         return 0.5 * (low + high)
-
-    def _rates(self, power: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
-        """Return (first rate in m³/s, x)."""
-        rate = self.initial * np.asarray(power, dtype=float) ** self.exponent
-        return rate, self.final_rate / np.maximum(rate, self.final_rate)
-
-    def _effective(self, time: np.ndarray, final: np.ndarray) -> np.ndarray:
-        """Return the bracket of the law, s."""
-        return final * time - (1.0 - final) * np.expm1(-self.slowing * time) / self.slowing
 
 
 # Coefficients K of pairs of materials, tube over support, by the shape of the support. m²/N.

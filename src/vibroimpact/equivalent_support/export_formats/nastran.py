@@ -37,9 +37,9 @@ def _cards(spring: PointSpring, unit: UnitSystem, number: int) -> list[str]:
         axes, system = (0, 1), number
         along = np.cross(spring.axes[0], spring.axes[1])
         corners = [place, place + unit.length * along, place + unit.length * spring.axes[0]]
-        lines += card("CORD2R", [number, 0, *np.concatenate(corners)])
-    lines += card("GRID", [number, 0, *place, 0])
-    lines += card("CBUSH", [number, number, number, None, None, None, None, system])
+        lines += _card("CORD2R", [number, 0, *np.concatenate(corners)])
+    lines += _card("GRID", [number, 0, *place, 0])
+    lines += _card("CBUSH", [number, number, number, None, None, None, None, system])
     properties: list = [number]
     for letter, values, factor in (
         ("K", spring.k, unit.stiffness),
@@ -52,10 +52,10 @@ def _cards(spring: PointSpring, unit: UnitSystem, number: int) -> list[str]:
             properties += [letter, *row]
             if letter == "K":
                 properties += [None]  # the next letter begins a line of its own
-    return lines + card("PBUSH", properties)
+    return lines + _card("PBUSH", properties)
 
 
-def card(name: str, fields: list) -> list[str]:
+def _card(name: str, fields: list) -> list[str]:
     """Return the lines of a card in large field format."""
     while fields and fields[-1] is None:
         fields = fields[:-1]
