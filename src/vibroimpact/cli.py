@@ -12,9 +12,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from vibroimpact import __version__, stability_command
-from vibroimpact.contact_export import command as contact_command
 from vibroimpact.diagnosis import diagnose_command, supports_command
 from vibroimpact.equivalent_support.command import add_arguments
+from vibroimpact.equivalent_support.contact_export import command as contact_command
 from vibroimpact.wear import command as wear_command
 
 # Read when numpy is first imported. The matrices are small: threads would wait for each other, and
@@ -212,7 +212,8 @@ def _compare(options: argparse.Namespace) -> int:
     from vibroimpact.config.problems import ConfigError
     from vibroimpact.config.reading import load_config
     from vibroimpact.diagnosis.measurement.comparable import comparison_problems
-    from vibroimpact.records import RecordError
+    from vibroimpact.io.records import RecordError
+    from vibroimpact.io.signal_files.signals import ImportProblem
     from vibroimpact.reports.linear_comparison import (
         NotComparable,
         comparison_text,
@@ -220,7 +221,6 @@ def _compare(options: argparse.Namespace) -> int:
         linear_comparison,
         lowest_responses,
     )
-    from vibroimpact.signal_files.signals import ImportProblem
 
     try:
         config = load_config(options.model)
@@ -404,7 +404,7 @@ def _measured_files(config) -> tuple[str, list[str]]:
     """Return ("; FILE: duration and rate" of each measured file of a study, their problems)."""
     from vibroimpact.campaign.file import CampaignError, checked_description
     from vibroimpact.excitation.force_files import ForceFileError, read_force, require_lasting
-    from vibroimpact.records import RecordError
+    from vibroimpact.io.records import RecordError
 
     told, problems = "", []
     force, record, step = config.excitation, config.record, config.integration
@@ -428,7 +428,7 @@ def _measured_files(config) -> tuple[str, list[str]]:
 def _sidecar(path: str) -> tuple[str | None, list[str]]:
     """Return (what the campaign.yaml of a folder of measurements is, its problems)."""
     from vibroimpact.campaign.importing.sidecar import read_sidecar
-    from vibroimpact.signal_files.signals import ImportProblem
+    from vibroimpact.io.signal_files.signals import ImportProblem
 
     try:
         sidecar = read_sidecar(path)

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from tests.oscillator import oscillator
-from vibroimpact.contact_export.points import ContactPoint, ContactSet
-from vibroimpact.contact_export.registry import contacts_text
+from evidence.validation.judges.presence import JudgeAbsent, opensees
+from tests.support.oscillator import oscillator
+from vibroimpact.equivalent_support.contact_export.points import ContactPoint, ContactSet
+from vibroimpact.equivalent_support.contact_export.registry import contacts_text
 from vibroimpact.integration.every_step import integrate_every_step
-from vibroimpact.validation.judges.presence import JudgeAbsent, opensees
 
 MASS, STIFFNESS, CONTACT, GAP = 2.0, 8.0e3, 1.0e6, 1.0e-3
 RATE, STEPS = 100_000, 6000

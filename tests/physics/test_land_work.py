@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.oscillator import oscillator
+from tests.support.oscillator import oscillator
 from vibroimpact.integration.batch import Schedule, integrate_batch
 from vibroimpact.integration.run_statistics import statistics
 

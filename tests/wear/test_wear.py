@@ -10,7 +10,7 @@ import xarray as xr
 import yaml
 
 import vibroimpact as vi
-from tests.tiny_study import tiny_values
+from tests.support.tiny_study import tiny_values
 from vibroimpact.cli import main
 from vibroimpact.config.wear import Wear
 from vibroimpact.reports.wear_life import wear_sentences, wear_table

@@ -15,7 +15,7 @@ from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.config.supports import Support
 from vibroimpact.config.wear import Wear
 from vibroimpact.geometry.sections import section_kind
-from vibroimpact.records import read_record
+from vibroimpact.io.records import read_record
 
 from .depth import YEAR_S, WornShape, depth_of, volume_of
 from .laws import Archard, EdfMz, WearLaw, published_laws
