@@ -263,3 +263,10 @@ def test_only_a_tube_wears():
     config = yaml.safe_load((ROOT / "config/examples/mass_between_stops.yaml").read_text())
     with pytest.raises(vi.ConfigError, match="wear = .* is of the wall of a tube"):
         vi.check_config(config | {"wear": {}}, "a mass")
+
+
+def test_single_steps_have_no_wear_life():
+    values = tiny_values(wear={}, identification=None)
+    values["record"] |= {"every_step": True}
+    with pytest.raises(vi.ConfigError, match="every_step = True gives no wear work rate"):
+        vi.check_config(values, "a study")

@@ -351,6 +351,7 @@ CHECKS: tuple[Callable[..., Problems], ...] = (
     *TUBE_CHECKS,
     *POINT_CHECKS,
     section_checks.wall_that_wears,
+    section_checks.wear_needs_statistics,
     names.chain_names,
     geometry_checks.support_lists,
     geometry_checks.offsets,

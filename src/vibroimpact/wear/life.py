@@ -123,10 +123,15 @@ def worn_life(
 
 
 def work_rates(records: Sequence[str | Path]) -> Rates:
-    """Return {(load in N, gap in m): {(support, land): work rate in W}}, medians over seeds."""
+    """Return {(load in N, gap in m): {(support, land): work rate in W}}, medians over seeds.
+
+    Raises NoWear for records of single steps.
+    """
     found: dict[tuple[float, float], dict[tuple[str, int], list[float]]] = {}
     for path in records:
         record = read_record(path)
+        if "wear_work_rate" not in record:
+            raise NoWear(f"{path}: a record of single steps has no wear work rate")
         case = float(record.attrs["load_rms_N"]), float(record.attrs["gap_m"])
         rates = record["wear_work_rate"].values[:, None]
         if "land_work_rate" in record:

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..export_formats.frames import head, plain_name
+from ..export_formats.frames import plain_name
 from ..export_formats.unit_system import UnitSystem
 from .points import ContactPoint, ContactSet
 
@@ -29,7 +29,7 @@ def text(contacts: ContactSet, unit: UnitSystem, first_number: int) -> str:
     Raises EquivalentError for a hole with lobes or off centre.
     """
     count = len(contacts.points)
-    lines = head(contacts, unit, "**", USE, title="Contact of supports")
+    lines = contacts.head(unit, "**", USE)
     for name, start in (("POINTS", first_number), ("GROUND", first_number + count)):
         lines.append(f"*NODE, NSET=SUPPORT_{name}")
         for number, point in enumerate(contacts.points, start):

@@ -16,7 +16,7 @@ import numpy as np
 from vibroimpact.config.profiles import Lobes
 from vibroimpact.contact.outline import radial_gap
 
-from ..export_formats.frames import head, plain_name
+from ..export_formats.frames import plain_name
 from ..export_formats.unit_system import UnitSystem
 from .points import ContactPoint, ContactSet
 
@@ -32,7 +32,7 @@ def text(contacts: ContactSet, unit: UnitSystem, first_number: int) -> str:
     """Return the commands. first_number is not used: groups have names."""
     outlines = {point.name: point for point in contacts.points if point.lobes[0]}
     lines = [
-        *head(contacts, unit, "#", USE, title="Contact of supports"),
+        *contacts.head(unit, "#", USE),
         "CIRCLE = DEFI_OBSTACLE(TYPE='CERCLE')",
         "PLANES = DEFI_OBSTACLE(TYPE='PLAN_Z')",
     ]

@@ -14,7 +14,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..answer import EquivalentError
-from ..export_formats.frames import global_axes, head, plain_name
+from ..export_formats.frames import global_axes, plain_name
 from ..export_formats.unit_system import UnitSystem
 from .points import ContactPoint, ContactSet
 
@@ -58,7 +58,7 @@ def text(contacts: ContactSet, unit: UnitSystem, first_number: int) -> str:
 
     Raises EquivalentError for a hole with lobes, off centre, or askew to the global axes.
     """
-    lines = head(contacts, unit, "#", USE, title="Contact of supports")
+    lines = contacts.head(unit, "#", USE)
     lines += [
         "# point: (position, k, (gap, two degrees of freedom) of a round hole,",
         "#         [(gap, normal, direction across it) of each flat land])",
@@ -78,7 +78,7 @@ def _hole(point: ContactPoint, unit: UnitSystem) -> str:
     if len(point.lands):
         return "None"
     point.require_circle("OpenSees")
-    along = global_axes(point)
+    along = global_axes(point.axes)
     if along is None:
         raise EquivalentError(
             f"{point.name}: a round hole of OpenSees lies across a global axis, this one does not:"

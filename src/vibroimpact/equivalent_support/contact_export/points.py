@@ -11,6 +11,9 @@ from vibroimpact.config.schema import Config
 from vibroimpact.reduction.modal_model import ModalModel
 
 from ..answer import EquivalentError
+from ..export_formats.frames import head
+from ..export_formats.unit_system import UnitSystem
+from ..springs import SpringSet
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,13 +66,17 @@ class ContactPoint:
 class ContactSet:
     """The contact of all supports. notes: sentences for the head of a file.
 
-    left_out: sentences for what a format can not say. warnings: empty.
+    left_out: sentences for what a format does not have.
     """
 
     points: tuple[ContactPoint, ...]
     notes: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
-    warnings: tuple[str, ...] = ()
+
+    def head(self, unit: UnitSystem, mark: str, use: str) -> list[str]:
+        """Return the comment lines that begin a file; mark and use as in frames.head."""
+        sentences = SpringSet((), (), self.notes, self.left_out)
+        return head(sentences, unit, mark, use, "Contact of supports")
 
 
 def contact_set(config: Config, model: ModalModel, gap_m: float) -> ContactSet:

@@ -3,36 +3,18 @@
 from __future__ import annotations
 
 import textwrap
-from typing import Protocol
 
 import numpy as np
 
+from ..springs import SpringSet
 from .unit_system import UnitSystem
 
 WIDTH = 66  # of comment lines: an input line of Nastran holds 72 characters of a comment
 AXIS_TOLERANCE = 1.0e-9  # of a unit vector's component
 
 
-class Described(Protocol):
-    """A set of springs or contacts with sentences for the head of a file."""
-
-    @property
-    def warnings(self) -> tuple[str, ...]: ...  # noqa: D102
-    @property
-    def notes(self) -> tuple[str, ...]: ...  # noqa: D102
-    @property
-    def left_out(self) -> tuple[str, ...]: ...  # noqa: D102
-
-
-class Placed(Protocol):
-    """A point with axes (2, 3), unit vectors of its two directions."""
-
-    @property
-    def axes(self) -> np.ndarray: ...  # noqa: D102
-
-
 def head(
-    content: Described,
+    content: SpringSet,
     unit: UnitSystem,
     mark: str,
     extra: str = "",
@@ -53,12 +35,12 @@ def head(
     return [f"{mark} {line}" for line in lines]
 
 
-def global_axes(spring: Placed) -> tuple[int, int] | None:
-    """Return the global axes (0 to 2) that the two directions of a spring are, up to the sign.
+def global_axes(directions: np.ndarray) -> tuple[int, int] | None:
+    """Return the global axes (0 to 2) that two directions (2, 3) are, up to the sign.
 
     None where they are not along the axes.
     """
-    axes = np.abs(spring.axes)
+    axes = np.abs(directions)
     first, second = (int(np.argmax(axis)) for axis in axes)
     along = axes[0, first] > 1.0 - AXIS_TOLERANCE and axes[1, second] > 1.0 - AXIS_TOLERANCE
     return (first, second) if along else None
