@@ -20,6 +20,7 @@ rule _study_page:
     output:
         page=f"{RESULTS}/index.html",
         summary=reported(f"{RESULTS}/summary.pdf"),
+        wear=[f"{RESULTS}/wear.csv"] if STUDY.wear is not None else [],
     log:
         f"{RESULTS}/logs/study_page.log",
     benchmark:

@@ -350,6 +350,8 @@ POINT_CHECKS: tuple[Callable[..., Problems], ...] = (
 CHECKS: tuple[Callable[..., Problems], ...] = (
     *TUBE_CHECKS,
     *POINT_CHECKS,
+    section_checks.wall_that_wears,
+    section_checks.wear_needs_statistics,
     names.chain_names,
     geometry_checks.support_lists,
     geometry_checks.offsets,

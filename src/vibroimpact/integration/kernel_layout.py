@@ -12,6 +12,7 @@ from .kernels.lanes import LANES
 from .kernels.panels import PANEL
 from .kernels.tables import QUIET, Contact, Hold, Laws, Modal, Output, State, Tally, Trace, Work
 from .modal_step import StepCoefficients, step_coefficients
+from .support_lands import law_lands
 
 FIXED_POINT_TOLERANCE = 1e-4  # relative change of the contact forces in the last pass, at most
 FIXED_POINT_ERROR = 1e-6  # relative error left in them: the change times the contraction
@@ -225,6 +226,7 @@ class ModalLayout:
         columns |= _element_columns(model)
         return Laws(
             contact_point=point,
+            land=law_lands(model, round_points)[0],
             flat=np.repeat([0, 1], [len(round_points), len(special.land_point)]).astype(np.int64),
             normal_1=np.outer(normal[:, 0], np.ones(LANES)),
             normal_2=np.outer(normal[:, 1], np.ones(LANES)),
@@ -283,6 +285,7 @@ class ModalLayout:
         counts = {
             "element_work": elements,
             "slip_work": elements,
+            "land_work": law_lands(self.model, self._round_points())[1],
             "input_work": 1,
             "contact_work": 1,
             "residual": 1,

@@ -67,6 +67,7 @@ class Laws(NamedTuple):
     """
 
     contact_point: np.ndarray  # (law,)
+    land: np.ndarray  # (law,) its place in Tally.land_work, with lobes the first one; -1: none
     flat: np.ndarray  # (law,) 1: a flat land with the normal below; 0: round the centre
     normal_1: np.ndarray  # (law, lane)
     normal_2: np.ndarray  # (law, lane)
@@ -132,6 +133,7 @@ class Tally(NamedTuple):
     impact_velocity_square: np.ndarray  # (support, lane) (m/s)² sum over impacts
     impact_velocity_peak: np.ndarray  # (support, lane) m/s
     sliding_work: np.ndarray  # (support, lane) J: normal force times sliding distance
+    land_work: np.ndarray  # (support and land, lane) J, by land; see support_lands
     force_displacement: np.ndarray  # (row, lane) N m sum of force times displacement
     row_work: np.ndarray  # (row, lane) J, trapezoidal sum of f du on contact rows
     row_force: np.ndarray  # (row, lane) N sum on contact rows
