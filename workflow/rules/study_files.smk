@@ -198,12 +198,12 @@ def targets():
     Without an identification: page, statistics of every case, and time series where they are kept.
     """
     series = [*(files_of_study("timeseries") if KEPT else []), *missing_files()]
-    pages = [f"{RESULTS}/index.html", f"{RESULTS}/summary.pdf"]
+    page = f"{RESULTS}/index.html"
     if STUDY.identification is None:
-        return [f"{RESULTS}/statistics.csv", *pages, *series]
+        return [f"{RESULTS}/statistics.csv", page, *series]
     figures = [file for group in FIGURES for file in figure_files(group)]
     tables = [*(f"{RESULTS}/{name}.csv" for name in TABLES), f"{RESULTS}/consistency.nc"]
-    return [*tables, *pages, *figures, *series]
+    return [*tables, page, *figures, *series]
 
 
 wildcard_constraints:

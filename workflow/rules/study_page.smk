@@ -1,4 +1,4 @@
-# The page of a study and its summary on two pages, from its tables, records, spectra and figures.
+# The page of a study, from its tables, records, spectra and figures.
 
 
 rule _study_page:
@@ -19,7 +19,6 @@ rule _study_page:
         captions=[caption_file(name) for name in figures_of_study()],
     output:
         page=f"{RESULTS}/index.html",
-        summary=reported(f"{RESULTS}/summary.pdf"),
     log:
         f"{RESULTS}/logs/study_page.log",
     benchmark:

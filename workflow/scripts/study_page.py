@@ -1,4 +1,4 @@
-"""Make the page of a study and its summary on two pages."""
+"""Make the page of a study."""
 
 from pathlib import Path
 
@@ -6,7 +6,6 @@ from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.figures.interactive.pictures import pictures
 from vibroimpact.figures.interactive.study_plots import StudyFiles, direction_of, study_plots
 from vibroimpact.figures.study.checks import limits
-from vibroimpact.figures.study_summary import study_summary
 from vibroimpact.job_log import redirect_output
 from vibroimpact.records import read_attributes, read_table, write_text
 from vibroimpact.reduction.model_accuracy import mesh_warnings
@@ -49,6 +48,5 @@ files = StudyFiles(model, given.series, given.spectra, given.curves, summary, re
 captions = {caption.name: caption for caption in map(read_caption, given.captions)}
 page = study_page(content, study_plots(content, files), pictures(given.figures, captions))
 write_text(page, snakemake.output.page)
-study_summary(content, snakemake.output.summary)
 print(f"{len(page.encode()) / 1e6:.1f} MB")
 print(Stopwatch().line())
