@@ -220,9 +220,9 @@ def test_a_bounded_stiffness_is_shown_everywhere(study):
     assert (gap, loads, value, why) == ("0.2", "0.1", "k: upper bound", text) and touching == "0.3"
     assert answer_in_words(row, ("kN/m", 1e-3)) == text + "."
     k, _, _, agreement, _ = equivalent_plots([row], [], "Load (N RMS)")
-    (trace,) = k.frames["0,0"]
+    (trace,) = k.drawn()["frames"]["0,0"]
     assert (trace["name"], trace["y"]) == ("upper bound", [2450.0])
-    assert agreement.frames["0"][0]["text"] == [["<"]]
+    assert agreement.drawn()["frames"]["0"][0]["text"] == [["<"]]
     assert "in 1 the tube hardly touches" in headline(study.config, [row])[0]
 
 
@@ -237,8 +237,8 @@ def test_every_load_and_gap_has_its_spectrum(page, study):
     plot = page.plots()["spectrum"]
     assert plot["controls"] == ["gap", "load"] and len(plot["frames"]) == len(GAPS) * len(LOADS)
     low, high, mean = plot["frames"]["1,2"]
-    assert mean["x"] == "@frequency"
-    frequency = np.array(plot["shared"]["frequency"])
+    assert low["x"] == high["x"] == mean["x"]  # written once, for all frames
+    frequency = np.array(plot["shared"][mean["x"].removeprefix("@")])
     assert frequency[np.argmax(mean["y"])] == pytest.approx(26.0, abs=0.3)  # 16 Hz + 10
     ratio = np.array(high["y"]) / np.array(mean["y"])
     assert np.median(ratio) == pytest.approx(4.0, rel=0.02)
@@ -312,9 +312,10 @@ def test_directions_have_curves_of_their_own(two_directions):
 def test_agreement_map_shows_every_case_with_its_reason(page):
     (cells,) = page.plots()["agreement_c"]["frames"]["0"]
     assert cells["text"] == [["–", "✓", "≠"]] * 2
-    assert cells["customdata"][0][0] == "no method resolves k; LSCF pole: no value"
-    assert cells["customdata"][0][1] == "c = 50 N s/m, agree"
-    assert cells["customdata"][0][2].startswith("c = 750 N s/m, the methods are more than 25 %")
+    nothing, agree, apart = cells["customdata"][0]
+    assert nothing == "load 0.1, gap 0.2 mm<br>no method resolves k; LSCF pole: no value"
+    assert agree.endswith("<br>c = 50 N s/m, agree")
+    assert "<br>c = 750 N s/m, the methods are more than 25 %" in apart
 
 
 def test_energy_residuals_stand_beside_their_limits(page):
@@ -464,9 +465,9 @@ def test_supports_of_a_chain_stand_side_by_side_by_name():
     )
     statistics = study_statistics([f"{case.id}.nc"], lambda path, names=None: touched)
     plot = contact_along_plot(statistics, [("0,0", (1.0e-3, 1.0))], build_model(config))
-    (bars,) = plot.frames["0,0"]
+    (bars,) = plot.drawn()["frames"]["0,0"]
     assert (bars["x"], bars["y"]) == (["stop"], [25.0])
-    assert plot.layout["xaxis"]["type"] == "category" and statistics.sections == []
+    assert plot.drawn()["layout"]["xaxis"]["type"] == "category" and statistics.sections == []
 
 
 def test_large_picture_is_made_smaller_and_looks_the_same(tmp_path):

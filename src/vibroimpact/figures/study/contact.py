@@ -8,6 +8,7 @@ from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.contact.outline import facing_angle, radial_gap
 from vibroimpact.contact.profiles import with_plain_profiles
 from vibroimpact.contact.static_law import static_force, support_gap
+from vibroimpact.figures.plot import Axis, Item, Mark, Panel, Plot, Series, Span, Text, extent
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import (
     BLACK,
@@ -28,7 +29,7 @@ from vibroimpact.reduction.reduced_model import build_model
 from .linear_limits import HELD, driven_frequencies
 
 POINTS = {1: PINK, 2: ORANGE, 3: GREEN, 5: BLUE, 9: BLACK}  # contact points per support -> colour
-LINES = {1: (0, (1, 1)), 2: (0, (4, 1)), 3: (0, (4, 1, 1, 1)), 5: "-", 9: (0, (6, 2))}
+LINES = {1: ":", 2: "--", 3: "-.", 5: "-", 9: "--"}
 # Kind of a profile -> the direction of the displacement in figure 3.
 WAYS = {
     "circular": "in any radial direction",
@@ -206,7 +207,7 @@ def model_with_points(config, points):
 
 
 def figure_04_first_frequency(config):
-    """Return the Sheet of first frequency against bilateral stiffness, by number of points."""
+    """Return the Plot of first frequency against bilateral stiffness, by number of points."""
     caption = (
         "First frequency of the driven plane against a bilateral stiffness k per support, shared"
         " by 1, 2, 3, 5 or 9 contact points over its height. Dotted: the frequencies of the free"
@@ -215,97 +216,56 @@ def figure_04_first_frequency(config):
         " step to the neighbouring limit. One point can pin the tube but never clamp it; five"
         " follow the layer over the whole range."
     )
-    sheet = Sheet(
-        "figure_04_first_frequency",
-        "First frequency against support stiffness",
-        caption,
-        size=(7.6, 4.7),
-    )
-    axes = sheet.axes["main"]
-    axes.set_title("first frequency of the driven plane, by number of contact points per support")
     models = {points: model_with_points(config, points) for points in POINTS}
+    finest = max(POINTS)
     frequency = {
         points: driven_frequencies(model, STIFFNESS)[:, 0] for points, model in models.items()
     }
-    finest = max(POINTS)
     limits = {
         "free": driven_frequencies(models[1], 0.0)[0, 0],
         "pinned in the middle": driven_frequencies(models[1], HELD)[0, 0],
         "clamped over the height": driven_frequencies(models[finest], HELD)[0, 0],
     }
-    _shade_ranges(axes, frequency[finest], *limits.values())
+    items = _shaded_ranges(frequency[finest], *limits.values())
     for points, values in frequency.items():
-        sheet.line(
-            axes,
-            ("support_stiffness_N_per_m", STIFFNESS),
-            ("first_frequency_Hz", values),
-            f"{points} points",
-            tags={"contact_points": points},
-            color=POINTS[points],
-            linestyle=LINES[points],
-            linewidth=2.2 if points == 5 else 1.4,
-            label=f"{points} point{'s' * (points > 1)}",
-        )
+        look = {"colour": POINTS[points], "line": LINES[points], "width": 1.4 + 0.8 * (points == 5)}
+        look["label"] = f"{points} point{'s' * (points > 1)}"
+        tags = {"contact_points": points}
+        items.append(Series(f"{points} points", STIFFNESS, values, tags, **look))
     for name, value in limits.items():
-        sheet.mark(
-            axes,
-            "first_frequency_Hz",
-            value,
-            name,
-            vertical=False,
-            color=GREY,
-            linestyle=":",
-            linewidth=1.0,
-        )
-        axes.annotate(
-            f"{name}: {value:.2f} Hz",
-            (STIFFNESS[0], value),
-            xytext=(3, 2),
-            textcoords="offset points",
-            fontsize=8.5,
-            color=BLACK,
-        )
-    totals = sorted({float(np.sum(support.stiffness_N_per_m)) for support in config.supports})
-    for total in totals:
-        sheet.mark(
-            axes,
-            "support_stiffness_N_per_m",
-            total,
-            "contact stiffness of the study",
-            color=RED,
-            linewidth=1.0,
-            linestyle="--",
-            label=(
-                f"full contact in the study, {number(total)} N/m:"
-                f" {driven_frequencies(models[finest], total)[0, 0]:.2f} Hz"
-            ),
-        )
-    axes.set_xscale("log")
-    axes.set_xlim(STIFFNESS[0], STIFFNESS[-1])
-    axes.margins(y=0.08)
-    sheet.figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=4)
-    return [sheet]
+        items.append(Mark(name, "y", value, colour=GREY, line=":", width=1.0))
+        items.append(Text(f"{name}: {value:.2f} Hz", STIFFNESS[0], value, shift=(3, 2), size=8.5))
+    for total in sorted({float(np.sum(each.stiffness_N_per_m)) for each in config.supports}):
+        first = driven_frequencies(models[finest], total)[0, 0]
+        look = {"label": f"full contact in the study, {number(total)} N/m: {first:.2f} Hz"}
+        look |= {"colour": RED, "width": 1.0, "line": "--"}
+        items.append(Mark("contact stiffness of the study", "x", total, **look))
+    panel = Panel(
+        Axis("support_stiffness_N_per_m", True, STIFFNESS[0], STIFFNESS[-1]),
+        Axis("first_frequency_Hz", False, *extent([*frequency.values()], margin=0.08)),
+        items,
+        "first frequency of the driven plane, by number of contact points per support",
+    )
+    title, size = "First frequency against support stiffness", (7.6, 4.7)
+    return [Plot("figure_04_first_frequency", title, caption, {"main": panel}, size=size, legend=4)]
 
 
-def _shade_ranges(axes, frequency, free, pinned, clamped):
-    """Shade the stiffness ranges that belong to a limit."""
+def _shaded_ranges(frequency, free, pinned, clamped) -> list[Item]:
+    """Return the stiffness ranges that belong to a limit, shaded, with their names."""
     steps = pinned - free, clamped - pinned
     ranges = {
         "free": frequency < free + NEAR * steps[0],
         "pinned": (frequency > pinned - NEAR * steps[0]) & (frequency < pinned + NEAR * steps[1]),
         "clamped": frequency > clamped - NEAR * steps[1],
     }
+    items: list[Item] = []
     for name, inside in ranges.items():
         places = STIFFNESS[inside]
         if places.size == 0:
             continue
-        axes.axvspan(places[0], places[-1], color=SKY, alpha=0.18, linewidth=0, zorder=0)
+        items.append(Span("x", places[0], places[-1], SKY, 0.18))
         at_end = places[-1] == STIFFNESS[-1]
-        axes.annotate(
-            f"{name} range",
-            (places[-1] if at_end else np.sqrt(places[0] * places[-1]), 0.01),
-            xycoords=("data", "axes fraction"),
-            ha="right" if at_end else "center",
-            va="bottom",
-            fontsize=8.5,
-        )
+        x = places[-1] if at_end else np.sqrt(places[0] * places[-1])
+        align = ("right" if at_end else "center", "bottom")
+        items.append(Text(f"{name} range", x, 0.01, "y", align=align, size=8.5))
+    return items
