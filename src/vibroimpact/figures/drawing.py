@@ -103,25 +103,22 @@ def _right_axes(axes: Axes, panel: Panel) -> Axes:
 
 def _finish_axis(axes: Axes, letter: str, axis: Axis, empty: bool) -> None:
     """Give an axis its label, scale, names and limits."""
-    setter = {"label": axes.set_xlabel, "scale": axes.set_xscale, "limits": axes.set_xlim}
-    if letter == "y":
-        setter = {"label": axes.set_ylabel, "scale": axes.set_yscale, "limits": axes.set_ylim}
-    setter["label"]("" if axis.bare else axis.label or label_of(axis.column))
+    values: dict[str, Any] = {"label": "" if axis.bare else axis.label or label_of(axis.column)}
+    which: Any = letter
     if axis.bare:
-        axes.tick_params(axis=letter, labelbottom=False, labelleft=False)
+        axes.tick_params(axis=which, labelbottom=False, labelleft=False)
     if axis.names:
-        ticks = axes.set_yticks if letter == "y" else axes.set_xticks
-        ticks(range(len(axis.names)), [*map(str, axis.names)], fontsize=8)
-        setter["limits"](len(axis.names) - 0.5, -0.5)
-        axes.grid(False, axis=letter)  # type: ignore[arg-type]
-        return
-    if axis.log and not empty:
-        setter["scale"]("log")
-    low, high = (
-        None if end is None else float(shown(axis.column, end)) for end in (axis.low, axis.high)
-    )
-    if low is not None or high is not None:
-        setter["limits"](low, high)
+        count = len(axis.names)
+        values |= {"ticks": range(count), "ticklabels": axis.names, "lim": (count - 0.5, -0.5)}
+        axes.grid(False, axis=which)
+    elif axis.log and not empty:
+        values["scale"] = "log"
+    ends = [None if end is None else shown(axis.column, end) for end in (axis.low, axis.high)]
+    if ends != [None, None]:
+        values["lim"] = ends
+    axes.set(**{f"{letter}{key}": value for key, value in values.items()})
+    if axis.names:
+        axes.tick_params(axis=which, labelsize=8)
 
 
 def _style(item: Look) -> dict[str, Any]:
@@ -218,7 +215,7 @@ def _span(sheet: Sheet, axes: Axes, panel: Panel, item: Span) -> None:
 
 
 def _text(sheet: Sheet, axes: Axes, panel: Panel, item: Text) -> None:
-    frames = ["axes fraction" if letter in item.of_panel else "data" for letter in "xy"]
+    frames: Any = ["axes fraction" if letter in item.of_panel else "data" for letter in "xy"]
     x, y = (
         value if letter in item.of_panel else float(shown(axis.column, value))
         for letter, axis, value in (("x", panel.x, item.x), ("y", panel.y, item.y))
@@ -226,7 +223,7 @@ def _text(sheet: Sheet, axes: Axes, panel: Panel, item: Text) -> None:
     axes.annotate(
         item.words,
         (x, y),
-        xycoords=tuple(frames),
+        xycoords=frames,
         xytext=item.shift,
         textcoords="offset points",
         ha=item.align[0],
@@ -274,8 +271,8 @@ def _legend_below(sheet: Sheet, plot: Plot) -> None:
         for handle, label in zip(*sheet.axes[key].get_legend_handles_labels(), strict=True):
             named.setdefault(label, handle)
     if named:
-        place = "outside lower center"
-        sheet.figure.legend(named.values(), named.keys(), loc=place, ncols=plot.legend)
+        look: dict[str, Any] = {"loc": "outside lower center", "ncols": plot.legend}
+        sheet.figure.legend([*named.values()], [*named], **look)
 
 
 def _colour_bar(sheet: Sheet, bar: ColourBar) -> None:

@@ -88,5 +88,7 @@ def _errors(evidence, states, channels):
         items.append(Bars(name, at, drawn, tags, texts=texts, **look))
     highest = 1.12 * max(float(np.max(item.values)) for item in items)
     return Panel(
-        Axis("free_error", False, 0.0, highest), Axis("channel", names=names[channels].tolist()), items
+        Axis("free_error", False, 0.0, highest),
+        Axis("channel", names=names[channels].tolist()),
+        items,
     )

@@ -149,7 +149,7 @@ def _bounds(chosen: Sequence[Answer]) -> list[Series]:
         return []
     loads, bounds = [row.load_rms_N for row in rows], [row.bound for row in rows]
     reasons = [row.k.reason for row in rows]
-    look = {"label": "upper bound", "colour": GREY, "line": "", "marker": "v"}
+    look: dict[str, Any] = {"label": "upper bound", "colour": GREY, "line": "", "marker": "v"}
     return [Series("upper bound", loads, bounds, hover=reasons, **look)]
 
 

@@ -137,7 +137,7 @@ def traces_of(panel: Panel) -> list[dict[str, Any]]:
             found.append(_bars(panel, item))
         elif isinstance(item, Cells):
             found.append(_cells(panel, item))
-        elif isinstance(item, Mark) and item.axis == "y" and panel.x.low is not None:
+        elif isinstance(item, Mark) and item.axis == "y" and panel.x.low and panel.x.high:
             ends = [panel.x.low, panel.x.high]
             line = Series(item.curve, ends, [item.value] * 2, label=item.label)
             found.append(_trace(panel, line) | {"mode": "lines", "line": _line(item)})
@@ -163,7 +163,7 @@ def _trace(panel: Panel, item: Series) -> dict[str, Any]:
     x_unit, y_unit = (unit_of(_title(axis)) for axis in (panel.x, y_axis))
     parts = [name for name, has in (("lines", item.line), ("markers", item.marker)) if has]
     name = item.label or item.curve
-    trace = {
+    trace: dict[str, Any] = {
         "type": "scatter",
         "mode": "+".join(parts),
         "name": name,

@@ -94,12 +94,21 @@ def shape_plot(
 
 def _moving(along: np.ndarray, shape: np.ndarray) -> Series:
     """Return the shape with its envelope; a page can play it."""
-    size, look = (
-        np.abs(shape),
-        {"label": "with contact", "colour": BLUE, "marker": "o", "size": 2.5},
+    size = np.abs(shape)
+    return Series(
+        "with contact",
+        along,
+        shape.real,
+        low=-size,
+        high=size,
+        band=True,
+        moving=shape.imag,
+        label="with contact",
+        colour=BLUE,
+        marker="o",
+        size=2.5,
+        width=2.0,
     )
-    moving = {"low": -size, "high": size, "band": True, "moving": shape.imag}
-    return Series("with contact", along, shape.real, width=2, **moving, **look)
 
 
 def contact_along_plot(
@@ -118,7 +127,12 @@ def contact_along_plot(
         rows = [statistics.spread("contact_fraction", gap, load, name) for name in names]
         middle, low, high = np.array(rows, dtype=float).reshape(-1, 3).T
         if np.isfinite(middle).any():
-            look = {"colour": BLUE, "label": "in contact", "texts": names, "thickness": width}
+            look: dict[str, Any] = {
+                "colour": BLUE,
+                "label": "in contact",
+                "texts": names,
+                "thickness": width,
+            }
             bars = Bars("contact", at, middle, {}, low, high, **look)
             frames[key] = Panel(axis, Axis("contact_fraction", False, 0.0, 1.12), [bars])
     return PagePlot(

@@ -184,7 +184,7 @@ def _levels(curves: dict[str, Series]) -> dict[str, Axis]:
     for key, curve in curves.items():
         mean = np.asarray(curve.y)
         if np.any(mean > 0.0):
-            low, high = 0.1 * mean[mean > 0.0].min(), 2.0 * np.max(curve.high)
+            low, high = 0.1 * mean[mean > 0.0].min(), 2.0 * np.array(curve.high, dtype=float).max()
             ends[key] = high / low, high
     decades = min(max((ratio for ratio, _ in ends.values()), default=1.0), 10.0**MOST_DECADES)
     return {

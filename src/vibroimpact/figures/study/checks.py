@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -65,7 +66,13 @@ def residual_items(found, accepted) -> list[Item]:
     items: list[Item] = []
     for variable, (loads, values, tags) in found.items():
         name, colour, marker = RESIDUALS[variable]
-        look = {"label": name, "colour": colour, "marker": marker, "line": "", "size": 3.5}
+        look: dict[str, Any] = {
+            "label": name,
+            "colour": colour,
+            "marker": marker,
+            "line": "",
+            "size": 3.5,
+        }
         hover = [
             f"{value:.2g} of the input work<br>{load:.3g} RMS, gap {1e3 * gap:.3g} mm"
             for load, value, gap in zip(loads, values, tags["gap_m"], strict=True)
