@@ -28,13 +28,14 @@ from vibroimpact.reports.captions import CATEGORIES, CaptionError, read_caption
 from vibroimpact.reports.centred_wear import centred_sentence
 from vibroimpact.reports.equivalent_answer import Answer, Value
 from vibroimpact.reports.study_statistics import study_statistics
-from vibroimpact.reports.study_tables import Table, answer_table, reason_table
+from vibroimpact.reports.study_tables import answer_table, reason_table
 from vibroimpact.reports.study_words import (
     answer_in_words,
     contact_sentences,
     headline,
     run_sentence,
 )
+from vibroimpact.reports.table import Table
 from vibroimpact.study.cases import all_cases, case_from_id
 
 ROOT = Path(__file__).parents[2]

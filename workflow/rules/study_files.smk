@@ -137,6 +137,13 @@ def caption_file(name):
     return f"{CAPTIONS}/{name}.rst"
 
 
+def page_files(name):
+    """The files of a page beside those that its script imports: templates, style and script."""
+    folder = Path(SOURCE, "vibroimpact", "reports")
+    shared = [folder / each for each in ("page.html", "page.css", "blocks.html")]
+    return [str(file) for file in (*shared, folder / f"{name}.html", *folder.glob(f"{name}.js"))]
+
+
 def reported(path, name=None):
     """An output that `snakemake --report` shows, with the caption of its name."""
     caption = read_caption(caption_file(name or Path(path).stem))

@@ -3,7 +3,7 @@
 
 rule _study_page:
     input:
-        page=[str(file) for file in sorted(Path(SOURCE).glob("vibroimpact/reports/*study_page.*"))],
+        page=page_files("study_page"),
         model=f"{RESULTS}/model.nc",
         accuracy=f"{RESULTS}/model_accuracy.csv",
         records=files_of_study("records"),

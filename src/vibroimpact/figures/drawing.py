@@ -56,9 +56,15 @@ def drawn(plot: Plot | Sheet) -> Sheet:
 
 
 def _label_outside(sheet: Sheet, rows: list[list[str]], share: str) -> None:
-    """Leave labels of shared axes to the lowest panel of a column and the first of a row."""
+    """Leave labels of shared axes to the lowest panel of a column and the first of a row, and the
+    same label of panels side by side to the left one.
+    """
     lowest = {[name for name in column if name != "."][-1] for column in zip(*rows, strict=True)}
     first = {[name for name in row if name != "."][0] for row in rows}
+    labels = {name: axes.get_ylabel() for name, axes in sheet.axes.items()} | {".": ""}
+    for left, right in (pair for row in rows for pair in zip(row, row[1:], strict=False)):
+        if left != right and labels[left] == labels[right] and right != ".":
+            sheet.axes[right].set_ylabel("")
     for name, axes in sheet.axes.items():
         if "x" in share:
             axes.tick_params(labelbottom=name in lowest)
@@ -103,7 +109,8 @@ def _right_axes(axes: Axes, panel: Panel) -> Axes:
 
 def _finish_axis(axes: Axes, letter: str, axis: Axis, empty: bool) -> None:
     """Give an axis its label, scale, names and limits."""
-    values: dict[str, Any] = {"label": "" if axis.bare else axis.label or label_of(axis.column)}
+    label = axis.label or ("" if axis.names else label_of(axis.column))
+    values: dict[str, Any] = {"label": "" if axis.bare else label}
     which: Any = letter
     if axis.bare:
         axes.tick_params(axis=which, labelbottom=False, labelleft=False)
@@ -131,6 +138,7 @@ def _style(item: Look) -> dict[str, Any]:
         "linewidth": item.width,
         "markersize": item.size,
         "markerfacecolor": "white" if item.hollow else None,
+        "markeredgewidth": 0.0 if item.marker == "." else None,
         "alpha": item.alpha,
         "zorder": item.order,
     }

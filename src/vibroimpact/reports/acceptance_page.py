@@ -10,9 +10,8 @@ from jinja2 import Environment, StrictUndefined
 
 from vibroimpact.effects.registry import effects_in_words
 
-from .discrepancy_page import embedded
 from .number_text import digits, percent
-from .page_style import STYLE
+from .page import STYLE, embedded
 
 TEMPLATE = Path(__file__).with_suffix(".html")
 

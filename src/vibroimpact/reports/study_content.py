@@ -14,7 +14,6 @@ from .equivalent_answer import ALL_SUPPORTS, Answer
 from .number_text import digits
 from .study_statistics import StudyStatistics
 from .study_tables import (
-    Table,
     answer_table,
     contact_table,
     element_table,
@@ -32,6 +31,7 @@ from .study_words import (
     load_unit,
     run_sentence,
 )
+from .table import Table
 
 MOST_LOADS = 8  # of a table of statistics, per gap
 

@@ -4,7 +4,7 @@ from collections import Counter
 from html import escape
 from pathlib import Path
 
-from .page_style import STYLE
+from .page import STYLE
 
 
 def validation_page(
