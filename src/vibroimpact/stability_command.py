@@ -117,7 +117,7 @@ def _write(found: Stability, folder: Path) -> None:
     """Write the tables and the figure."""
     from .figures.drawing import save_plots
     from .figures.stability import stability_figure
-    from .records import write_table
+    from .io.records import write_table
 
     folder.mkdir(parents=True, exist_ok=True)
     write_table([row.table_row() for row in found.rows], folder / "stability.csv")
