@@ -223,7 +223,7 @@ def _span(sheet: Sheet, axes: Axes, panel: Panel, item: Span) -> None:
 
 
 def _text(sheet: Sheet, axes: Axes, panel: Panel, item: Text) -> None:
-    frames: Any = ["axes fraction" if letter in item.of_panel else "data" for letter in "xy"]
+    frames: Any = tuple("axes fraction" if at in item.of_panel else "data" for at in "xy")
     x, y = (
         value if letter in item.of_panel else float(shown(axis.column, value))
         for letter, axis, value in (("x", panel.x, item.x), ("y", panel.y, item.y))

@@ -9,7 +9,6 @@ from vibroimpact.contact.outline import facing_angle, radial_gap
 from vibroimpact.contact.profiles import with_plain_profiles
 from vibroimpact.contact.static_law import static_force, support_gap
 from vibroimpact.figures.plot import Axis, Item, Mark, Panel, Plot, Series, Span, Text, extent
-from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import (
     BLACK,
     BLUE,
@@ -21,7 +20,6 @@ from vibroimpact.figures.style import (
     SKY,
     gap_label,
     number,
-    shown,
 )
 from vibroimpact.geometry.sections import outer_width
 from vibroimpact.reduction.reduced_model import build_model
@@ -42,7 +40,7 @@ NEAR = 0.05
 
 
 def figure_03_contact_law(config, structure):
-    """Return the Sheet of the discretised layer of stiffness and of the force law.
+    """Return the Plot of the discretised layer of stiffness and of the force law.
 
     The law is drawn with its tangent and secant stiffness.
     """
@@ -58,142 +56,77 @@ def figure_03_contact_law(config, structure):
         " the tangent stiffness; force over displacement is the secant stiffness, which rises with"
         " the amplitude: this is why an equivalent linear support stiffens with the load."
     )
-    sheet = Sheet(
-        "figure_03_contact_law",
-        "Contact: a discretised elastic layer behind a gap",
-        caption,
-        [["layer", "law"]],
-        size=(7.6, 3.7),
-        width_ratios=(1, 1.35),
-    )
-    _layer(sheet, sheet.axes["layer"], support, structure)
-    _law(sheet, sheet.axes["law"], support, gap)
-    return [sheet]
+    panels = {"layer": _layer(support, structure), "law": _law(support, gap)}
+    title = "Contact: a discretised elastic layer behind a gap"
+    size = (7.6, 3.7)
+    return [Plot("figure_03_contact_law", title, caption, panels, size=size, widths=(1, 1.35))]
 
 
-def _layer(sheet, axes, support, structure):
-    """Draw the stiffness density and the points that discretise it, over the height."""
-    axes.set_title("stiffness over the height")
+def _layer(support, structure):
+    """Return the Panel of the stiffness over the height and the points that discretise it."""
     members = structure.contact.support == 0
     height = structure.contact.arc_length[members] - structure.contact.arc_length[members].mean()
     values = structure.contact.stiffness[members]
     half = 0.5 * support.height_m
     density = values.sum() / support.height_m
-    layer = np.array([-half, -half, half, half]), np.array([0.0, density, density, 0.0])
-    sheet.line(
-        axes,
-        ("stiffness_density_N_per_m2", layer[1]),
-        ("height_in_support_m", layer[0]),
-        "layer",
-        color=GREY,
-        linewidth=1.0,
-        label="elastic layer",
-    )
-    axes.fill_betweenx(
-        shown("height_in_support_m", layer[0]),
-        shown("stiffness_density_N_per_m2", layer[1]),
-        color=GREY,
-        alpha=0.15,
-        linewidth=0,
-    )
     share = values / (support.height_m / len(values))
-    sheet.line(
-        axes,
-        ("stiffness_density_N_per_m2", share),
-        ("height_in_support_m", height),
-        "contact points",
-        tags={"contact_stiffness_N_per_m": values},
-        color=RED,
-        marker="o",
-        linestyle="none",
-        label="contact points",
+    layer = np.array([0.0, density, density, 0.0]), np.array([-half, -half, half, half])
+    tags = {"contact_stiffness_N_per_m": values}
+    look = {"colour": RED, "marker": "o", "line": "", "label": "contact points"}
+    items: list[Item] = [
+        Series("layer", *layer, label="elastic layer", colour=GREY, width=1.0),
+        Series("contact points", share, height, tags, **look),
+    ]
+    for place, size, value in zip(height, share, values, strict=True):
+        items.append(Series("", [0.0, size], [place, place], colour=RED, width=1.2))
+        words, align = f"{number(value)} N/m", ("center", "bottom")
+        items.append(Text(words, 0.4, place, "x", (0, 2), align))
+    axes = (
+        Axis("stiffness_density_N_per_m2", False, 0.0, 1.25 * max(share.max(), density)),
+        Axis("height_in_support_m", False, -1.5 * half, 1.75 * half),
     )
-    axes.hlines(
-        shown("height_in_support_m", height),
-        0.0,
-        shown("stiffness_density_N_per_m2", share),
-        color=RED,
-        linewidth=1.2,
-    )
-    for place, value in zip(height, values, strict=True):
-        axes.annotate(
-            f"{number(value)} N/m",
-            (0.4, shown("height_in_support_m", place)),
-            xycoords=("axes fraction", "data"),
-            xytext=(0, 2),
-            textcoords="offset points",
-            ha="center",
-            va="bottom",
-            fontsize=8,
-        )
-    axes.set_xlim(0.0, shown("stiffness_density_N_per_m2", 1.25 * max(share.max(), density)))
-    axes.set_ylim(-1.5e3 * half, 1.75e3 * half)
-    sheet.legend(axes, loc="upper right", ncols=2)
+    legend = {"legend": "upper right", "legend_columns": 2}
+    return Panel(*axes, items, "stiffness over the height", **legend)
 
 
-def _law(sheet, axes, support, gap):
-    """Draw the force law along the first stop or land, and secants to two displacements."""
-    axes.set_title("force, tangent and secant stiffness")
+def _law(support, gap):
+    """Return the Panel of the force along the first stop or land, with secants to two points."""
     angle = facing_angle(support.profile)
     ahead, behind = radial_gap(support.profile, gap, np.array([angle, angle + np.pi]))
     reach = 1.6 * max(abs(side) for side in (ahead, behind) if np.isfinite(side)) or 1e-5
     displacement = np.linspace(-reach, reach, 321)
     force = static_force(support, gap, angle, displacement)
-    slope = np.gradient(force, displacement)
-    law = {
-        "tangent_stiffness_N_per_m": slope,
-        "secant_stiffness_N_per_m": np.divide(
-            force, displacement, out=np.zeros_like(force), where=displacement != 0.0
-        ),
+    secant = np.divide(force, displacement, out=np.zeros_like(force), where=displacement != 0.0)
+    tags = {
+        "tangent_stiffness_N_per_m": np.gradient(force, displacement),
+        "secant_stiffness_N_per_m": secant,
     }
     label = "contact force"
     if support.hertz_N_per_m15 == 0.0:
         label += f"; tangent {number(np.sum(support.stiffness_N_per_m))} N/m past the gap"
-    sheet.line(
-        axes,
-        ("radial_displacement_m", displacement),
-        ("contact_force_N", force),
-        "contact force",
-        tags=law,
-        color=BLUE,
-        linewidth=2.2,
-        label=label,
-    )
-    if ahead > 0.0:
-        _secants(sheet, axes, support, gap, angle, ahead)
+    look = {"colour": BLUE, "width": 2.2, "label": label}
+    items: list[Item] = [Series("contact force", displacement, force, tags, **look)]
+    items += _secants(support, gap, angle, ahead) if ahead > 0.0 else []
     for side in {side for side in (-behind, ahead) if np.isfinite(side)}:
-        sheet.mark(
-            axes, "radial_displacement_m", side, "gap", color=GREY, linewidth=0.9, linestyle=":"
-        )
-    axes.annotate(
-        "gap",
-        (shown("radial_displacement_m", ahead), 0.03),
-        xycoords=("data", "axes fraction"),
-        xytext=(3, 0),
-        textcoords="offset points",
-        color=GREY,
-        fontsize=8.5,
-    )
+        text = "gap" if side == ahead else ""
+        items.append(Mark("gap", "x", side, text, colour=GREY, width=0.9, line=":"))
     span = np.ptp(force)
-    axes.set_ylim(force.min() - 0.08 * span, force.max() + 0.5 * span)
-    sheet.legend(axes, loc="upper left")
+    axes = (
+        Axis("radial_displacement_m"),
+        Axis("contact_force_N", False, force.min() - 0.08 * span, force.max() + 0.5 * span),
+    )
+    return Panel(*axes, items, "force, tangent and secant stiffness", legend="upper left")
 
 
-def _secants(sheet, axes, support, gap, angle, ahead):
-    """Draw secants to two displacements beyond the stop that lies ahead."""
-    for reach, colour, dash in ((1.2, ORANGE, (0, (5, 2))), (1.5, RED, (0, (2, 1)))):
+def _secants(support, gap, angle, ahead):
+    """Return secants to two displacements beyond the stop that lies ahead."""
+    items = []
+    for reach, colour, line in ((1.2, ORANGE, "--"), (1.5, RED, ":")):
         (top,) = static_force(support, gap, angle, np.array([reach * ahead]))
-        sheet.line(
-            axes,
-            ("radial_displacement_m", [0.0, reach * ahead]),
-            ("contact_force_N", [0.0, top]),
-            f"secant at {reach:g} gap",
-            color=colour,
-            linestyle=dash,
-            marker="o",
-            markevery=[1],
-            label=f"secant at {reach:g} gap: {number(top / (reach * ahead))} N/m",
-        )
+        label = f"secant at {reach:g} gap: {number(top / (reach * ahead))} N/m"
+        look = {"colour": colour, "line": line, "marker": "o", "label": label}
+        items.append(Series(f"secant at {reach:g} gap", [0.0, reach * ahead], [0.0, top], **look))
+    return items
 
 
 def model_with_points(config, points):
