@@ -115,6 +115,7 @@ def _span(low: float, high: float) -> str:
 
 def _write(found: Stability, folder: Path) -> None:
     """Write the tables and the figure."""
+    from .figures.drawing import save_plots
     from .figures.stability import stability_figure
     from .io.records import write_table
 
@@ -122,7 +123,7 @@ def _write(found: Stability, folder: Path) -> None:
     write_table([row.table_row() for row in found.rows], folder / "stability.csv")
     if found.eigenvalues is not None:
         write_table(list(_eigenvalue_rows(found.eigenvalues)), folder / "eigenvalues.csv")
-    stability_figure(found).save(folder)
+    save_plots([stability_figure(found)], folder)
 
 
 def _eigenvalue_rows(own: Eigenvalues) -> Iterator[dict[str, float]]:

@@ -1,4 +1,4 @@
-"""Make the page of a study and its summary on two pages."""
+"""Make the page of a study."""
 
 from dataclasses import asdict, fields
 from pathlib import Path
@@ -7,7 +7,6 @@ from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.figures.interactive.pictures import pictures
 from vibroimpact.figures.interactive.study_plots import StudyFiles, direction_of, study_plots
 from vibroimpact.figures.study.checks import limits
-from vibroimpact.figures.study_summary import study_summary
 from vibroimpact.io.job_log import redirect_output
 from vibroimpact.io.records import read_attributes, read_table, write_table, write_text
 from vibroimpact.io.stopwatch import Stopwatch
@@ -56,6 +55,5 @@ write_text(page, snakemake.output.page)
 if config.wear is not None:
     columns = tuple(field.name for field in fields(WearRow))
     write_table([asdict(row) for row in worn], snakemake.output.wear[0], columns)
-study_summary(content, snakemake.output.summary)
 print(f"{len(page.encode()) / 1e6:.1f} MB")
 print(Stopwatch().line())

@@ -1,4 +1,4 @@
-"""What the page and the summary of a study say: gathered once, so that both say the same."""
+"""The content of the page of a study."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ from .equivalent_answer import ALL_SUPPORTS, Answer
 from .number_text import digits
 from .study_statistics import StudyStatistics
 from .study_tables import (
-    Table,
     answer_table,
     contact_table,
     element_table,
@@ -33,6 +32,7 @@ from .study_words import (
     load_unit,
     run_sentence,
 )
+from .table import Table
 from .wear_life import wear_sentences, wear_table
 
 MOST_LOADS = 8  # of a table of statistics, per gap
@@ -159,9 +159,9 @@ class StudyContent:
         """Return " at a gap of ... mm", empty where the gap of a case means nothing."""
         return "" if has_own_gaps(self.config) else f" at a gap of {digits(1e3 * gap_m)} mm"
 
-    def loads_in_tables(self, most: int = MOST_LOADS) -> list[float]:
+    def loads_in_tables(self) -> list[float]:
         """Return the loads that tables of statistics list."""
-        return spread_evenly(self.statistics.loads, most)
+        return spread_evenly(self.statistics.loads, MOST_LOADS)
 
     def answer_tables(self) -> list[tuple[float, Table]]:
         """Return (gap in m, table of the recommended values) of each gap."""
@@ -180,11 +180,11 @@ class StudyContent:
         """Return why values are not resolved, or differ."""
         return reason_table(self.answers, self.statistics, self.several, self.unit)
 
-    def contact_tables(self, most: int = MOST_LOADS) -> list[tuple[float, Table]]:
+    def contact_tables(self) -> list[tuple[float, Table]]:
         """Return (gap in m, contact and wear by load and support) of each gap."""
         if not self.statistics.supports:
             return []
-        loads = self.loads_in_tables(most)
+        loads = self.loads_in_tables()
         return [
             (gap, contact_table(self.statistics, gap, loads, self.unit))
             for gap in self.statistics.gaps
@@ -208,9 +208,9 @@ class StudyContent:
             for gap in self.statistics.gaps
         ]
 
-    def stress(self, most: int = MOST_LOADS) -> Table:
+    def stress(self) -> Table:
         """Return the stress by gap and load."""
-        return stress_table(self.statistics, self.loads_in_tables(most), self.unit)
+        return stress_table(self.statistics, self.loads_in_tables(), self.unit)
 
     def energy(self) -> Table:
         """Return the worst energy residuals."""

@@ -10,7 +10,8 @@ from typing import Any
 from vibroimpact.wear.life import WearRow, deepest, wear_rank
 
 from .number_text import digits
-from .study_tables import Table, span
+from .study_tables import span
+from .table import Table
 
 
 def wear_sentences(rows: Sequence[WearRow], config: Any, unit: str) -> list[str]:
