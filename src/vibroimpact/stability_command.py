@@ -65,6 +65,8 @@ def run(options: argparse.Namespace) -> int:
     except (ConfigError, NoFlow) as error:
         print(error, file=sys.stderr)
         return 1
+    for warning in found.warnings:
+        print(f"warning: {warning}", file=sys.stderr)
     print(as_text(found, options.inactive))
     return 0
 

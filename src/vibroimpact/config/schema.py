@@ -365,5 +365,7 @@ class Config(Section):
     )
     overlay: Overlay = Field(Overlay(), description="The campaign of figure 5.")
     flow: Flow | None = Field(
-        None, description="A flow across the tube, for `vibroimpact stability`; null for none."
+        None,
+        description="A flow across the tube, for `vibroimpact stability` and fluid-elastic forces;"
+        " null for none.",
     )

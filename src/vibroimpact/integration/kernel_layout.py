@@ -5,12 +5,25 @@ from functools import cache, cached_property
 
 import numpy as np
 
+from vibroimpact.excitation.fluid_elastic import FluidLaws
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .kernels.decimation import CHANNEL_BLOCK, RATIO, SLOTS
 from .kernels.lanes import LANES
 from .kernels.panels import PANEL
-from .kernels.tables import QUIET, Contact, Hold, Laws, Modal, Output, State, Tally, Trace, Work
+from .kernels.tables import (
+    QUIET,
+    Contact,
+    Fluid,
+    Hold,
+    Laws,
+    Modal,
+    Output,
+    State,
+    Tally,
+    Trace,
+    Work,
+)
 from .modal_step import StepCoefficients, step_coefficients
 
 FIXED_POINT_TOLERANCE = 1e-4  # relative change of the contact forces in the last pass, at most
@@ -37,6 +50,7 @@ class ModalLayout:
     implicit_shapes: for each group {RowKey: shape (mode of the group,)}, in the order of its rows.
     drive_shapes (mode, force_channel): the model's, then, where there is a dead load, that as a
         channel of constant force 1.
+    force_shapes (mode, channel): drive_shapes, then the rows of the fluid-elastic force.
     padded: number of modes after padding every group to whole panels.
     place (mode,): index of each mode among the padded ones.
     """
@@ -46,6 +60,7 @@ class ModalLayout:
         self.drive_shapes = model.drive_shapes
         if np.any(model.constant_force):
             self.drive_shapes = np.column_stack([model.drive_shapes, model.constant_force])
+        self.force_shapes = np.column_stack([self.drive_shapes, model.fluid_shapes])
         self.groups: list[tuple[np.ndarray, list[int]]] = []
         self.implicit_shapes: list[dict[RowKey, np.ndarray]] = []
         self._make_groups()
@@ -70,7 +85,7 @@ class ModalLayout:
         for modes, _ in model.blocks:
             moved = {key: shape[modes] for key, shape in shapes.items() if np.any(shape[modes])}
             driven = [
-                c for c in range(self.drive_shapes.shape[1]) if np.any(self.drive_shapes[modes, c])
+                c for c in range(self.force_shapes.shape[1]) if np.any(self.force_shapes[modes, c])
             ]
             self.groups.append((np.asarray(modes), driven))
             self.implicit_shapes.append(moved)
@@ -130,7 +145,7 @@ class ModalLayout:
     def _group_row_shapes(self, g: int) -> np.ndarray:
         """Shape of every row of group g over its modes: (row, mode of the group)."""
         modes, driven = self.groups[g]
-        drive = self.drive_shapes[modes][:, driven].T
+        drive = self.force_shapes[modes][:, driven].T
         implicit = list(self.implicit_shapes[g].values())
         return np.array([*implicit, *drive]).reshape(-1, len(modes))
 
@@ -252,6 +267,32 @@ class ModalLayout:
         empty = [np.zeros((0, LANES)) for _ in range(4)]
         return Hold(none, np.zeros(1, np.int64), none, np.zeros((0, 0, LANES)), *empty)
 
+    def fluid(self, modal: Modal, laws: Sequence[FluidLaws] = ()) -> Fluid:
+        """The kernel's Fluid; laws: those of each lane, none for the model's in all."""
+        drives, rows = self.drive_shapes.shape[1], self.model.fluid_shapes.shape[1]
+        own = [np.flatnonzero(modal.row_force_channel == drives + x) for x in range(rows)]
+        lanes = [*laws, *[self.model.fluid_laws] * (LANES - len(laws))]
+        lags = self.model.fluid_laws.lag_rate.shape[1]
+
+        def stacked(name: str) -> np.ndarray:
+            values = [getattr(lane, name).reshape(-1) for lane in lanes]
+            return np.ascontiguousarray(np.stack(values, axis=-1))
+
+        turn = np.maximum(stacked("lag_rate") * modal.dt, 1.0e-300)
+        moving = [_aligned((rows, LANES)) for _ in range(4)]
+        return Fluid(
+            np.cumsum([0, *map(len, own)]).astype(np.int64),
+            np.concatenate([*own, np.zeros(0, np.int64)]).astype(np.int64),
+            lags * np.arange(rows + 1, dtype=np.int64),
+            stacked("stiffness"),
+            stacked("damping"),
+            stacked("lag_stiffness"),
+            np.exp(-turn),
+            -np.expm1(-turn) / turn,
+            *moving,
+            _aligned((rows * lags, LANES)),
+        )
+
     def state(self) -> State:
         """A structure at rest."""
         rows, supports = self._rows_and_supports()
@@ -284,6 +325,7 @@ class ModalLayout:
             "element_work": elements,
             "slip_work": elements,
             "input_work": 1,
+            "fluid_work": 1,
             "contact_work": 1,
             "residual": 1,
             "dissipated": 1,

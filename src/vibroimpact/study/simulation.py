@@ -196,6 +196,9 @@ def record_dataset(
     tallies = statistics(lanes, lane, schedule.steps_per_second)
     over_limit = tallies["stress_peak"].max(initial=0.0) > config.record.stress_limit_Pa
     values = series | tallies | energy_balance(lanes, lane, model.conservative)
+    if len(model.fluid_laws.velocity):
+        record_s = lanes.steps / schedule.steps_per_second
+        values["fluid_power"] = lanes.tally["fluid_work"][0, lane] / record_s
     values["stress_flag"] = np.asarray(over_limit, np.int8)
     return describe(values, coordinates, case_attributes(config, schedule, case))
 
