@@ -279,18 +279,16 @@ class ModalLayout:
             return np.ascontiguousarray(np.stack(values, axis=-1))
 
         turn = np.maximum(stacked("lag_rate") * modal.dt, 1.0e-300)
-        moving = [_aligned((rows, LANES)) for _ in range(4)]
+        moving = ("force", "displacement", "free", "memory")
         return Fluid(
-            np.cumsum([0, *map(len, own)]).astype(np.int64),
-            np.concatenate([*own, np.zeros(0, np.int64)]).astype(np.int64),
-            lags * np.arange(rows + 1, dtype=np.int64),
-            stacked("stiffness"),
-            stacked("damping"),
-            stacked("lag_stiffness"),
-            np.exp(-turn),
-            -np.expm1(-turn) / turn,
-            *moving,
-            _aligned((rows * lags, LANES)),
+            row_start=np.cumsum([0, *map(len, own)]).astype(np.int64),
+            row=np.concatenate([*own, np.zeros(0, np.int64)]).astype(np.int64),
+            lag_start=lags * np.arange(rows + 1, dtype=np.int64),
+            decay=np.exp(-turn),
+            gain=-np.expm1(-turn) / turn,
+            lag=_aligned((rows * lags, LANES)),
+            **{name: stacked(name) for name in ("stiffness", "damping", "lag_stiffness")},
+            **{name: _aligned((rows, LANES)) for name in moving},
         )
 
     def state(self) -> State:

@@ -86,7 +86,7 @@ def simulate_cases(
                     schedule,
                     gap=gap,
                     imperfection=offset,
-                    drive=_drive(batch, forces, stopwatch),
+                    drive=drive_of(batch, forces, stopwatch),
                     receive=(
                         None
                         if put is None
@@ -136,9 +136,13 @@ def imperfection(config: Any, model: ModalModel, case: Case) -> np.ndarray:
     return draw * (config.integration.imperfection * case.gap_m)
 
 
-def _drive(
+def drive_of(
     batch: list[Case], forces: dict[int, list[ForceStream]], stopwatch: Stopwatch
 ) -> Callable:
+    """Return the Drive of a batch: the forces of each case's seed, {seed: its channels}, times its
+    load.
+    """
+
     def drive(first: int, count: int) -> np.ndarray:
         with stopwatch("force"):
             unit = {
