@@ -256,7 +256,8 @@ class Run:
         self.contact = layout.contact(lane_gap, to_lanes(imperfection, 0.0), contraction)
         self.laws = layout.laws(lane_gap)
         self.state, self.tally, self.work = layout.state(), layout.tally(), layout.work()
-        self.hold, self.fluid = layout.hold(self.modal), layout.fluid(self.modal, fluid)
+        self.hold = layout.hold(self.modal)
+        self.fluid = layout.fluid(self.modal, self.cases, fluid)
         self.begin(initial)
         # The second filter stage needs this many ticks before the first of a chunk.
         self.history = schedule.filter.second.size - schedule.filter.step

@@ -74,7 +74,7 @@ def integrate_every_step(
     force = np.zeros((ticks * RATIO + 1, layout.drive_shapes.shape[1], LANES))
     force[:, :channels, :cases] = drive(0, ticks * RATIO + 1)
     force[:, channels:] = 1.0  # the dead load, see ModalLayout.drive_shapes
-    fluid, start = layout.fluid(modal), start_amplitudes(model, rest)
+    fluid, start = layout.fluid(modal, cases), start_amplitudes(model, rest)
     start_state(layout, modal, contact, laws, fluid, state, work, force[0], start)
     start_displacement, start_force = state.row_displacement.copy(), state.row_force.copy()
     mechanical_before = np.sum(modal_energies(layout, modal.dt, state), axis=0)

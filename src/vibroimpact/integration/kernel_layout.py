@@ -267,16 +267,19 @@ class ModalLayout:
         empty = [np.zeros((0, LANES)) for _ in range(4)]
         return Hold(none, np.zeros(1, np.int64), none, np.zeros((0, 0, LANES)), *empty)
 
-    def fluid(self, modal: Modal, laws: Sequence[FluidLaws] = ()) -> Fluid:
-        """The kernel's Fluid; laws: those of each lane, none for the model's in all."""
+    def fluid(self, modal: Modal, cases: int = LANES, laws: Sequence[FluidLaws] = ()) -> Fluid:
+        """The kernel's Fluid of the first lanes; in the others, without stops near, it would grow.
+
+        laws: those of each case, none for the model's in all.
+        """
         drives, rows = self.drive_shapes.shape[1], self.model.fluid_shapes.shape[1]
         own = [np.flatnonzero(modal.row_force_channel == drives + x) for x in range(rows)]
-        lanes = [*laws, *[self.model.fluid_laws] * (LANES - len(laws))]
+        lanes = laws or [self.model.fluid_laws] * cases
         lags = self.model.fluid_laws.lag_rate.shape[1]
 
         def stacked(name: str) -> np.ndarray:
-            values = [getattr(lane, name).reshape(-1) for lane in lanes]
-            return np.ascontiguousarray(np.stack(values, axis=-1))
+            values = np.stack([getattr(lane, name).reshape(-1) for lane in lanes], axis=-1)
+            return np.pad(values, ((0, 0), (0, LANES - len(lanes))))
 
         turn = np.maximum(stacked("lag_rate") * modal.dt, 1.0e-300)
         moving = ("force", "displacement", "free", "memory")
