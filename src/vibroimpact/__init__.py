@@ -58,8 +58,8 @@ PUBLIC = {
     "virtual_supports": "diagnosis.supports",
     "stability": "flow.stability",
     "flow_sweep": "study.flow_sweep",
-    "read_record": "records",
-    "write_record": "records",
+    "read_record": "io.records",
+    "write_record": "io.records",
     "configurations": "study_folder.shared_files",
     "workflow_snakefile": "study_folder.shared_files",
 }

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tests.oscillator import oscillator
+from tests.support.oscillator import oscillator
 from vibroimpact.config.flow import ConnorsForce, NegativeDamping, QuasiSteady
 from vibroimpact.excitation.fluid_elastic import fluid_force
 from vibroimpact.integration.contact_convergence import IntegrationError

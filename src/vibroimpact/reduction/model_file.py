@@ -9,7 +9,7 @@ import xarray as xr
 
 from vibroimpact.contact.laws import ContactLaws, LocalLaws
 from vibroimpact.excitation.fluid_elastic import FluidLaws
-from vibroimpact.records import read_record, write_record
+from vibroimpact.io.records import read_record, write_record
 
 from .modal_model import ModalModel
 from .model_variables import model_attributes

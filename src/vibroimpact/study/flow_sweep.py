@@ -27,7 +27,7 @@ from vibroimpact.integration.batch import BatchResult, Schedule, integrate_batch
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.integration.preload import seated
-from vibroimpact.stopwatch import Stopwatch
+from vibroimpact.io.stopwatch import Stopwatch
 
 from .cases import Case, load_values
 from .in_process import reduced_model
