@@ -163,7 +163,8 @@ def _parser() -> argparse.ArgumentParser:
         description="Print the ratio of the effective to the critical velocity of each mode of a"
         " tube in a cross flow, with all its supports holding and without some of them; with a"
         " fluid-elastic force also the velocity at which an eigenvalue begins to grow. The section"
-        " flow of the configuration gives velocities, density and criterion. Nothing is simulated.",
+        " flow of the configuration gives velocities, density and criterion. Nothing is simulated,"
+        " unless --simulate asks for it.",
     )
     stability_command.add_arguments(stability)
     wear = commands.add_parser(

@@ -372,6 +372,8 @@ CHECKS: tuple[Callable[..., Problems], ...] = (
     names.driven_direction_is_recorded,
     turbulence_checks.band,
     flow_checks.lags,
+    flow_checks.acting,
+    flow_checks.fitted_range,
     _force,
     _overlay,
     _bands_pass_the_filter,

@@ -366,7 +366,9 @@ class Config(Section):
     )
     overlay: Overlay = Field(Overlay(), description="The campaign of figure 5.")
     flow: Flow | None = Field(
-        None, description="A flow across the tube, for `vibroimpact stability`; null for none."
+        None,
+        description="A flow across the tube, for `vibroimpact stability` and fluid-elastic forces;"
+        " null for none.",
     )
     wear: Wear | None = Field(
         None, description="Wear life on the study's page and in its wear.csv; null for none."

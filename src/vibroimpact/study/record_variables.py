@@ -102,6 +102,7 @@ VARIABLES: dict[str, tuple[tuple, str, str, str]] = {
         "J",
         "energy that contacts and elements took beyond what their springs hold",
     ),
+    "fluid_power": ((), "f8", "W", "mean power that the fluid-elastic force gives to the tube"),
     "element_displacement_square": (
         ("element",),
         "f8",

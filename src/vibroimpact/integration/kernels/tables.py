@@ -122,7 +122,8 @@ class State(NamedTuple):
 class Tally(NamedTuple):
     """Sums over the steps since they were last cleared, each (.., lane)."""
 
-    input_work: np.ndarray  # (lane,) J
+    input_work: np.ndarray  # (lane,) J, of the drive and of the fluid
+    fluid_work: np.ndarray  # (lane,) J, of fluid-elastic forces
     contact_work: np.ndarray  # (lane,) J, trapezoidal sum of f du over contacts and elements
     dissipated: np.ndarray  # (lane,) J, by the modal damping
     contact_steps: np.ndarray  # (support, lane)
@@ -202,6 +203,24 @@ class Hold(NamedTuple):
     difference: np.ndarray  # (sensor, lane) m, measured less model, one step earlier
     memory: np.ndarray  # (sensor, lane) m/s, what row_velocity keeps of the last step
     rate: np.ndarray  # (sensor, lane) m/s, work space
+
+
+class Fluid(NamedTuple):
+    """Fluid-elastic forces, the force channels behind those of the drive; no rows: none acts."""
+
+    row_start: np.ndarray  # (fluid_row + 1,) first entry of each in `row`
+    row: np.ndarray  # (entry,) a row of each group that moves it
+    lag_start: np.ndarray  # (fluid_row + 1,) first lag of each
+    stiffness: np.ndarray  # (fluid_row, lane), this and the next see fluid
+    damping: np.ndarray  # (fluid_row, lane)
+    lag_stiffness: np.ndarray  # (lag, lane)
+    decay: np.ndarray  # (lag, lane)
+    gain: np.ndarray  # (lag, lane)
+    force: np.ndarray  # (fluid_row, lane) at the end of the last step, as all below
+    displacement: np.ndarray  # (fluid_row, lane) one step earlier
+    free: np.ndarray  # (fluid_row, lane) without forces at the end of the step
+    memory: np.ndarray  # (fluid_row, lane) what row_velocity keeps
+    lag: np.ndarray  # (lag, lane) z, one step earlier
 
 
 class Trace(NamedTuple):

@@ -31,8 +31,10 @@ from .lanes import (
 
 
 @inlined
-def tally_drive(modal, state, tally, work, in_contact):
-    """Add the work of the drive; make the end of the step the start of the next on its rows."""
+def tally_drive(modal, state, tally, work, in_contact, forces):
+    """Add the work of the drive, whose channels are the first ``forces``, and of the fluid; make
+    the end of the step the start of the next on their rows.
+    """
     input_work = load(tally.input_work, 0)
     for g in range(modal.row_start.size - 1):
         row0, row_f, row1 = modal.row_start[g], modal.force_row_start[g], modal.row_start[g + 1]
@@ -46,7 +48,10 @@ def tally_drive(modal, state, tally, work, in_contact):
                     )
             du = u - load(state.row_displacement, f)
             force = load(work.force, f)
-            input_work = fma(0.5 * (force + load(state.row_force, f)), du, input_work)
+            mean = 0.5 * (force + load(state.row_force, f))
+            input_work = fma(mean, du, input_work)
+            if modal.row_force_channel[f] >= forces:
+                store(tally.fluid_work, 0, fma(mean, du, load(tally.fluid_work, 0)))
             store(state.row_displacement, f, u)
             store(state.row_force, f, force)
     store(tally.input_work, 0, input_work)
