@@ -32,9 +32,9 @@ Every row is stated by a test that passed; faults with one outcome share a row.
   under `--workflow-profile none`: Snakemake runs it before this package reads it. Run
   `vibroimpact check FILE` on files of others first; it runs nothing.
 - **Numbers.** A number of a configuration acts, or is refused: a test moves each number of the
-  schema and demands another model, force or setting of a stage. Exceptions: velocities and criterion
-  of `flow`, for `vibroimpact stability` alone; `record.stress_limit_Pa`, which changes a flag; the rows of
-  matrices in files; the sampling frequency of a force, which must be that of its file. The
+  schema and demands another model, force or setting of a stage. Exceptions: velocities and
+  criterion of `flow`, for `vibroimpact stability` alone; `record.stress_limit_Pa`, which changes
+  a flag; the rows of matrices in files; the sampling frequency of a force, which must be that of its file. The
   stiffness of a support with a Hertzian contact acts on its friction alone, and `grid.gap_m`
   names the case if every support has a gap of its own.
 - **Campaigns.** Records are compared with each other without a model. No comparison can show a
