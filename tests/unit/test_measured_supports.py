@@ -1,6 +1,7 @@
 """What a measured tube leaves in its folder, and what is refused, each with its remedy."""
 
 import runpy
+import shutil
 import sys
 from pathlib import Path
 from types import SimpleNamespace
@@ -28,6 +29,7 @@ from vibroimpact.measured_support.levels import cases_of_records, gaps_of_record
 from vibroimpact.measured_support.usable import identification_problems
 from vibroimpact.records import read_table, write_record, write_table
 from vibroimpact.reduction.reduced_model import build_model
+from vibroimpact.study.run_files import write_run_files
 
 ROOT = Path(__file__).parents[2]
 SENSORS = ("apex.y", "bend_45.y", "apex.x")
@@ -101,6 +103,17 @@ def test_the_folder_is_read_as_that_of_a_study(results):
     assert along.supports == ("left", "right")
     assert along.k.value == pytest.approx(2.0e5, rel=0.05)
     assert along.c.value == pytest.approx(80.0, rel=0.35)
+
+
+def test_tables_of_another_model_are_refused(results, config, tmp_path):
+    copy = Path(shutil.copytree(results, tmp_path / "bench"))
+    values = config.model_dump(mode="json")
+    write_run_files(copy, values, ["snakemake"])
+    assert equivalent(copy, 1.0, 2.8886e-4).groups
+    values["damping"]["other_ratio"] *= 2.0
+    write_run_files(copy, values, ["snakemake"])
+    with pytest.raises(EquivalentError, match="summary.csv: is of another configuration than"):
+        equivalent(copy, 1.0, 2.8886e-4)
 
 
 def test_each_estimate_names_its_record(results):

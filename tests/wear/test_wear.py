@@ -5,11 +5,15 @@ import csv
 import numpy as np
 import pytest
 import xarray as xr
-import yaml
 
 import vibroimpact as vi
 from tests.tiny_study import tiny_values
 from vibroimpact.cli import main
+from vibroimpact.config.reading import load_config
+from vibroimpact.config.stage_keys import stage_params
+from vibroimpact.provenance import config_digest
+from vibroimpact.study.cases import all_cases
+from vibroimpact.study.run_files import write_run_files
 from vibroimpact.wear.depth import YEAR_S, crescent_area, depth_of, segment_area, volume_of
 from vibroimpact.wear.life import Service, wear_life
 
@@ -24,18 +28,20 @@ def results(tmp_path):
     values["supports"][0] |= {"profile": bar}
     config = vi.check_config(values, "a study")
     (tmp_path / "records").mkdir()
-    plain = config.model_dump(mode="json")
-    (tmp_path / "config.yaml").write_text(yaml.safe_dump(plain), encoding="utf-8")
+    write_run_files(tmp_path, config.model_dump(mode="json"), ["snakemake"])
     names = [support.name for support in config.supports]
-    for load, rates in RATES.items():
-        for seed, factor in enumerate((0.5, 1.5)):
-            attributes = {"load_rms_N": load, "gap_m": 1e-4, "seed": seed}
-            record = xr.Dataset(
-                {"wear_work_rate": ("support", factor * np.array(rates), {"units": "W"})},
-                coords={"support": names},
-                attrs=attributes,
-            )
-            vi.write_record(record, tmp_path / "records" / f"load_{load}_seed_{seed}.nc")
+    origin = {
+        "config_digest": config_digest(stage_params(config, "simulate")),
+        "model_digest": config_digest(stage_params(config, "basis")),
+    }
+    for case in all_cases(config.grid):
+        rates = (0.5, 1.5)[case.seed] * np.array(RATES[case.load_rms_N])
+        record = xr.Dataset(
+            {"wear_work_rate": ("support", rates, {"units": "W"})},
+            coords={"support": names},
+            attrs={"load_rms_N": case.load_rms_N, "gap_m": case.gap_m, **origin},
+        )
+        vi.write_record(record, tmp_path / "records" / f"{case.id}.nc")
     return tmp_path
 
 
@@ -112,3 +118,41 @@ def test_the_limit_is_reached_after_the_years_told(results):
     worn = wear_life(results, Service((2e-14,)))[-2]
     again = wear_life(results, Service((2e-14,), years=worn.years_to_limit))[-2]
     assert again.wall_share == pytest.approx(0.4, rel=1e-6)
+
+
+def answer_after(results, key, value, capsys):
+    """(exit code, errors) of the command after a run of a changed configuration was killed."""
+    values = load_config(results / "config.yaml").model_dump(mode="json")
+    *sections, last = key.split(".")
+    level = values
+    for name in sections:
+        level = level[int(name) if name.isdigit() else name]
+    level[last] = value
+    write_run_files(results, values, ["snakemake"])
+    code = main(["wear", str(results), "--coefficient", "1e-15"])
+    return code, capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [("seed", 5), ("record.duration_s", 9.0), ("supports.0.stiffness_N_per_m", 3e6)],
+)
+def test_records_of_another_configuration_are_refused(results, key, value, capsys, reliability):
+    """A key of the simulation, and one of the model alone."""
+    code, errors = answer_after(results, key, value, capsys)
+    assert code == 1 and "_seed_0.nc: is of another configuration than" in errors
+    assert f"{results / 'provenance.json'} to the end first" in errors
+    reliability.fault(
+        "a run of a changed configuration is killed, and the old records stand",
+        "`vibroimpact wear` refuses them",
+    )
+
+
+def test_keys_that_a_record_does_not_depend_on_may_change(results, capsys):
+    assert answer_after(results, "spectra.overlap", 0.5, capsys) == (0, "")
+
+
+def test_a_study_without_all_its_records_is_refused(results, capsys):
+    assert answer_after(results, "grid.load_rms_N", [4.0], capsys) == (0, "")
+    code, errors = answer_after(results, "grid.load_rms_N", [4.0, 8.0], capsys)
+    assert code == 1 and "load_8_gap_0.0001_seed_0.nc: is missing, one of 2 of the 4" in errors

@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from vibroimpact.config.reading import check_config
+from vibroimpact.config.stage_keys import answer_digest
 from vibroimpact.figures.interactive.measured_plots import measured_plots
 from vibroimpact.figures.interactive.pictures import pictures
 from vibroimpact.figures.study.measured import measured_figures, study_beside
@@ -22,7 +23,8 @@ redirect_output(snakemake.log[0])
 values, folder = snakemake.params.model, Path(snakemake.output.page).parent
 config = check_config(values, "the model")
 found = equivalent_of(str(snakemake.input.campaign), config)
-write_measured(found, folder, file_attributes(values, snakemake.params.library))
+attributes = file_attributes(values, snakemake.params.library)
+write_measured(found, folder, attributes, answer_digest(values))
 sheets = measured_figures(found, study_beside(config, snakemake.params.study))
 for sheet in sheets:
     sheet.save(folder / "figures")

@@ -14,6 +14,8 @@ from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.config.supports import Support
 from vibroimpact.geometry.sections import section_kind
 from vibroimpact.records import read_record
+from vibroimpact.study.own_results import own_records
+from vibroimpact.study.run_files import CONFIG_FILE
 
 from .depth import YEAR_S, depth_of, volume_of
 
@@ -62,17 +64,17 @@ def wear_life(folder: str | Path, service: Service) -> list[WearRow]:
 
     All work of a support wears one place of the tube: with a bore the crescent of that bore, with
     flat lands or bars one flat, over the height of the support. Raises NoWear, ConfigError,
-    RecordError.
+    and RecordError where a record is missing or of another configuration than config.yaml there.
     """
     folder = Path(folder)
-    records = sorted((folder / "records").glob("*.nc"))
-    if not records:
+    if not any((folder / "records").glob("*.nc")):
         raise NoWear(f"{folder / 'records'}: there are no records: give the results of a study")
-    config = load_config(folder / "config.yaml")
+    config = load_config(folder / CONFIG_FILE)
     structure: ConfigPart = config.structure
     if structure.kind not in TUBES or section_kind(structure.section) != "tube":
         raise NoWear(f"{folder}: wear life is that of the wall of a tube, this structure has none")
     section = structure.section
+    records = own_records(folder, config)
     supports = {support.name: support for support in config.supports}
     rows = []
     for (load, gap), rates in sorted(_rates(records).items(), key=lambda item: item[0][::-1]):
