@@ -22,9 +22,11 @@ from vibroimpact.campaign.file import (
 from vibroimpact.campaign.importing.report import import_text
 from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.reading import load_config
+from vibroimpact.config.stage_keys import answer_digest
 from vibroimpact.equivalent_support.answer import EquivalentError
 from vibroimpact.equivalent_support.study_answer import equivalent
 from vibroimpact.figures.discrepancy.quicklook import quicklook
+from vibroimpact.figures.study.measured import study_beside
 from vibroimpact.measured_support.levels import cases_of_records, gaps_of_records
 from vibroimpact.measured_support.usable import identification_problems
 from vibroimpact.records import read_table, write_record, write_table
@@ -141,6 +143,14 @@ def test_figure_5_has_the_equivalent_linear_tube(results):
         for name in ("measured, mean", "linear tube on the equivalent support")
     }
     assert len(set(np.round([*peak.values()], 0))) == 1
+
+
+def test_a_study_of_another_configuration_is_not_drawn_behind(results, config, tmp_path):
+    rows = read_table(results.parent / "mine" / "consistency.csv")
+    for digest, drawn in ((answer_digest(config.model_dump(mode="json")), True), ("0123", False)):
+        own = [row | {"config_digest": digest} for row in rows]
+        write_table(own, tmp_path / "consistency.csv")
+        assert (study_beside(config, tmp_path) is not None) == drawn
 
 
 @needs_chromium
