@@ -17,7 +17,8 @@ class Recording:
     """What a file was written from, and how far that can be read of it.
 
     signals {name: (time,)}: as stored, without noise of the type. rate: Hz.
-    units {name: text}: as the file states them. factors {name: SI units per unit}. outcome: what a reader owes.
+    units {name: text}: as the file states them. factors {name: SI units per unit}.
+    outcome: what a reader owes.
     relative: of the largest value, what the type of the numbers loses.
     odd: names of the habits that may be other than usual. habits: those that are, as (name, how).
     """
