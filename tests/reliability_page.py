@@ -31,6 +31,10 @@ A profile of Snakemake is a program, and so is a configuration with `__use_yte__
 profile is switched off (`--workflow-profile none`): Snakemake runs it before this package reads it.
 Run `vibroimpact check FILE` on a file of others first; it runs nothing.
 
+Answers of another configuration than the one in their folder are refused: `vibroimpact equivalent`
+compares the tables with it, `vibroimpact wear` the records and their model. The other commands read
+no results.
+
 A number that a configuration states acts, or is refused: a test moves each number of the schema and
 demands another model, force or setting of a stage. The exceptions are the section `flow`, which
 `vibroimpact stability` alone reads; `record.stress_limit_Pa`, which changes a flag; the rows of

@@ -21,7 +21,7 @@ HABITS = {
     "byte_ordering": [(1, RIGHT), (2, RIGHT)],
     "ord_data_type": [(4, RIGHT), (2, RIGHT), (5, REFUSED)],
     "abscissa_spacing": [(1, RIGHT), (0, RIGHT)],
-    "func_type": [(1, RIGHT), (0, RIGHT), (2, REFUSED), (4, REFUSED), (12, REFUSED)],
+    "func_type": [(1, RIGHT), (0, RIGHT), (2, REFUSED), (4, REFUSED), (6, REFUSED)],
     "rsp_dir": [(2, RIGHT), (-2, RIGHT), (1, RIGHT), (-3, RIGHT), (0, RIGHT), (4, RIGHT)],
     "abscissa_axis_units_lab": [("s", RIGHT), ("ms", RIGHT), ("NONE", RIGHT), ("Hz", REFUSED)],
     "ordinate_axis_units_lab": [
