@@ -29,13 +29,12 @@ include: "workflow/rules/equivalent.smk"
 include: "workflow/rules/supports_prediction.smk"
 include: "workflow/rules/diagnosis.smk"
 include: "workflow/rules/discrepancy_report.smk"
-include: "workflow/rules/acceptance_files.smk"
-include: "workflow/rules/acceptance.smk"
 include: "workflow/rules/timing.smk"
-include: "workflow/rules/equivalent_law.smk"
-include: "workflow/rules/validation_convergence.smk"
-include: "workflow/rules/validation_judges.smk"
-include: "workflow/rules/validation.smk"
+
+
+if (ROOT / "evidence").is_dir():
+
+    include: "evidence/rules/evidence.smk"
 
 
 localrules:

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.tiny_study import ROOT
+from tests.support.tiny_study import ROOT
+from vibroimpact.io.whole_file import HOST, RecordError, process_lives, remove_left_over, whole_file
 from vibroimpact.study.run_owner import (
     BOOT,
     FolderTaken,
@@ -19,7 +20,6 @@ from vibroimpact.study.run_owner import (
     start_text,
     take_folder,
 )
-from vibroimpact.whole_file import HOST, RecordError, process_lives, remove_left_over, whole_file
 
 PROGRAM = """
 import sys

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.sound_campaign import sound_campaign
 
 from tests.properties.guarded import Tried, folder_of_example, guarded
 from tests.properties.recorder_files import EITHER, REFUSED, RIGHT
 from tests.properties.test_campaigns import model, read
-from tests.sound_campaign import sound_campaign
 from vibroimpact.campaign.file import CampaignError
 from vibroimpact.campaign.signals import campaign_signals
 

@@ -10,8 +10,8 @@ from tests.properties.guarded import Tried, folder_of_example, guarded
 from tests.properties.recorder_files import EITHER, REFUSED, RIGHT
 from tests.properties.test_raw_measurements import pytestmark as pytestmark
 from vibroimpact.campaign.importing.uff import read_uff
-from vibroimpact.signal_files.signals import ImportProblem
-from vibroimpact.units import si_factor
+from vibroimpact.io.signal_files.signals import ImportProblem
+from vibroimpact.io.units import si_factor
 
 RATE, SAMPLES, OFFSET_MM = 512.0, 96, 250.0
 FORCE, ACCELERATION = 13, 12

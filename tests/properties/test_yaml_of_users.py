@@ -11,15 +11,15 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.config.test_config import leaves, put
 from tests.properties.full_configurations import CONFIGURATIONS
 from tests.properties.guarded import Tried, folder_of_example, guarded
 from tests.properties.recorder_files import EITHER, REFUSED, RIGHT
 from tests.properties.test_raw_measurements import described
-from tests.unit.test_config import leaves, put
 from vibroimpact.campaign.importing.sidecar import Sidecar, read_sidecar
 from vibroimpact.config.problems import ConfigError
 from vibroimpact.config.reading import check_config, load_config
-from vibroimpact.signal_files.signals import ImportProblem
+from vibroimpact.io.signal_files.signals import ImportProblem
 
 PLACEHOLDER = "QQ7QQ"
 SAME = object()

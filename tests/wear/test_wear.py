@@ -7,11 +7,11 @@ import pytest
 import xarray as xr
 
 import vibroimpact as vi
-from tests.tiny_study import tiny_values
+from tests.support.tiny_study import tiny_values
 from vibroimpact.cli import main
 from vibroimpact.config.reading import load_config
 from vibroimpact.config.stage_keys import stage_params
-from vibroimpact.provenance import config_digest
+from vibroimpact.io.provenance import config_digest
 from vibroimpact.study.cases import all_cases
 from vibroimpact.study.run_files import write_run_files
 from vibroimpact.wear.depth import YEAR_S, crescent_area, depth_of, segment_area, volume_of

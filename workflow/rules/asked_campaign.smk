@@ -5,7 +5,7 @@ from functools import cache
 from vibroimpact.campaign.file import CampaignError, checked_description
 from vibroimpact.config.reserved_names import name_problem
 from vibroimpact.diagnosis.measurement.comparable import channel_rows, comparison_problems
-from vibroimpact.records import RecordError
+from vibroimpact.io.records import RecordError
 
 IMPORTED = Path(REQUEST.get("import", "import")).resolve().name
 
@@ -93,7 +93,7 @@ def folder_to_import(folder):
     """
     from vibroimpact.campaign.importing.draft import checked_folder
     from vibroimpact.campaign.importing.raw_files import raw_files
-    from vibroimpact.signal_files.signals import ImportProblem
+    from vibroimpact.io.signal_files.signals import ImportProblem
 
     try:
         if not workflow.is_main_process:

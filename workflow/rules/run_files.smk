@@ -1,11 +1,11 @@
 # What a run writes beside its results and says at its end: its configuration, where it comes from,
 # the headline of the study, or what failed.
 from snakemake.logging import logger
-from vibroimpact.records import read_table, read_text
+from vibroimpact.io.records import read_table, read_text
 from vibroimpact.study.run_files import write_run_files
 from vibroimpact.study.run_owner import FolderTaken, require_past, start_text, take_folder
 from vibroimpact.study.run_report import failure_text, success_text, warnings_text
-from vibroimpact.whole_file import RecordError, remove_left_over
+from vibroimpact.io.whole_file import RecordError, remove_left_over
 
 # Whose this folder is. The lock that goes with it takes the place of Snakemake's, see the profile.
 MARK = ".snakemake/vibroimpact_run.json"

@@ -1,9 +1,10 @@
 """Build and write the reduced model, its accuracy, and what each family of its basis brings."""
 
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.job_log import redirect_output
-from vibroimpact.provenance import file_attributes
-from vibroimpact.records import write_table
+from vibroimpact.io.job_log import redirect_output
+from vibroimpact.io.provenance import file_attributes
+from vibroimpact.io.records import write_table
+from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.reduction.basis_accuracy import basis_frequency_errors, require_complete
 from vibroimpact.reduction.model_accuracy import (
     COLUMNS,
@@ -13,7 +14,6 @@ from vibroimpact.reduction.model_accuracy import (
 )
 from vibroimpact.reduction.model_file import write_model
 from vibroimpact.reduction.reduced_model import build_model
-from vibroimpact.stopwatch import Stopwatch
 
 redirect_output(snakemake.log[0])
 config = StageSettings(snakemake.params.config)

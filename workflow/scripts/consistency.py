@@ -1,12 +1,12 @@
 """Gather the estimates of all cases into the consistency tables."""
 
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.job_log import redirect_output
+from vibroimpact.io.job_log import redirect_output
+from vibroimpact.io.provenance import file_attributes
+from vibroimpact.io.records import write_record, write_table
+from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.linear.support_groups import unreached_supports
-from vibroimpact.provenance import file_attributes
-from vibroimpact.records import write_record, write_table
 from vibroimpact.reduction.model_file import read_model
-from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.study.agreement_dataset import consistency_dataset
 from vibroimpact.study.case_files import read_estimates
 from vibroimpact.study.equivalent_table import DIGEST_COLUMN, EQUIVALENT_COLUMNS, equivalent_rows

@@ -9,8 +9,8 @@ os.environ |= {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", 
 from vibroimpact.diagnosis.diagnose import run_diagnosis, write_diagnosis
 from vibroimpact.diagnosis.identified.structure_file import model_from
 from vibroimpact.diagnosis.progress import SoFar
-from vibroimpact.job_log import redirect_output
-from vibroimpact.provenance import verdict_origin
+from vibroimpact.io.job_log import redirect_output
+from vibroimpact.io.provenance import verdict_origin
 
 redirect_output(snakemake.log[0])
 values, campaign = snakemake.params.model, str(snakemake.input.campaign)

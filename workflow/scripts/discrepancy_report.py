@@ -5,8 +5,8 @@ from pathlib import Path
 from vibroimpact.config.schema import Config
 from vibroimpact.diagnosis.identified.structure_file import model_from
 from vibroimpact.figures.diagnosis.sheets import diagnosis_figures
-from vibroimpact.job_log import redirect_output
-from vibroimpact.records import read_record, write_text
+from vibroimpact.io.job_log import redirect_output
+from vibroimpact.io.records import read_record, write_text
 from vibroimpact.reports.discrepancy_page import FREE_RUNS, NOISE, discrepancy_page
 from vibroimpact.verdict.content import read_verdict
 

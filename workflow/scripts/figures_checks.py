@@ -4,10 +4,10 @@ from pathlib import Path
 
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.figures.study import checks, equivalent
-from vibroimpact.job_log import redirect_output
-from vibroimpact.records import read_table
+from vibroimpact.io.job_log import redirect_output
+from vibroimpact.io.records import read_table
+from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.reduction.model_file import read_model
-from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.study.case_files import read_case
 
 redirect_output(snakemake.log[0])

@@ -5,10 +5,10 @@ from pathlib import Path
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.figures.study import broadband, poles, shapes
 from vibroimpact.figures.study.cases_of_gap import cases_of_gap, shown_gap
-from vibroimpact.job_log import redirect_output
-from vibroimpact.records import read_table
+from vibroimpact.io.job_log import redirect_output
+from vibroimpact.io.records import read_table
+from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.reduction.model_file import read_model
-from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.study.case_files import read_case
 
 redirect_output(snakemake.log[0])

@@ -4,9 +4,9 @@ from pathlib import Path
 
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.figures.study import basis, contact, tube
-from vibroimpact.job_log import redirect_output
-from vibroimpact.records import read_table
-from vibroimpact.stopwatch import Stopwatch
+from vibroimpact.io.job_log import redirect_output
+from vibroimpact.io.records import read_table
+from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.structure.tube import build_structure
 
 redirect_output(snakemake.log[0])

@@ -5,9 +5,9 @@ from pathlib import Path
 from vibroimpact.campaign.file import read_campaign
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.figures.study import overlay, psd_table, response
-from vibroimpact.job_log import redirect_output
+from vibroimpact.io.job_log import redirect_output
+from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.reduction.model_file import read_model
-from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.study.case_files import read_case
 
 redirect_output(snakemake.log[0])

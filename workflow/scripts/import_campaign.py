@@ -7,8 +7,8 @@ from vibroimpact.campaign.file import write_campaign
 from vibroimpact.campaign.importing.assemble import import_folder
 from vibroimpact.campaign.importing.report import write_report
 from vibroimpact.figures.discrepancy.quicklook import quicklook
-from vibroimpact.job_log import redirect_output
-from vibroimpact.signal_files.signals import ImportProblem
+from vibroimpact.io.job_log import redirect_output
+from vibroimpact.io.signal_files.signals import ImportProblem
 
 redirect_output(snakemake.log[0])
 try:

@@ -6,8 +6,8 @@ from pathlib import Path
 from vibroimpact.campaign.checks.file_checks import COLUMNS, check_file
 from vibroimpact.campaign.importing.report import checks_text
 from vibroimpact.figures.discrepancy.quicklook import quicklook
-from vibroimpact.job_log import redirect_output
-from vibroimpact.records import write_table, write_text
+from vibroimpact.io.job_log import redirect_output
+from vibroimpact.io.records import write_table, write_text
 
 redirect_output(snakemake.log[0])
 campaign, checks = check_file(snakemake.input.campaign, unmade=True)

@@ -1,10 +1,10 @@
 """Simulate all cases of one load and write their records and, if wanted, their time series."""
 
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.job_log import redirect_output
-from vibroimpact.provenance import file_attributes
+from vibroimpact.io.job_log import redirect_output
+from vibroimpact.io.provenance import file_attributes
+from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.reduction.model_file import read_model
-from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.study.cases import cases_of_files
 from vibroimpact.study.own_results import model_attributes
 from vibroimpact.study.series_writer import series_writer, write_record_parts

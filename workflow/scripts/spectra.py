@@ -1,10 +1,10 @@
 """Write the spectra of all cases of one load."""
 
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.job_log import redirect_output
-from vibroimpact.provenance import file_attributes
-from vibroimpact.records import write_record
-from vibroimpact.stopwatch import Stopwatch
+from vibroimpact.io.job_log import redirect_output
+from vibroimpact.io.provenance import file_attributes
+from vibroimpact.io.records import write_record
+from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.study.case_files import read_case
 from vibroimpact.study.case_spectra import case_spectra
 

@@ -1,8 +1,8 @@
 """Gather the statistics of all cases into one table."""
 
-from vibroimpact.job_log import redirect_output
-from vibroimpact.records import write_table
-from vibroimpact.stopwatch import Stopwatch
+from vibroimpact.io.job_log import redirect_output
+from vibroimpact.io.records import write_table
+from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.study.case_files import read_case
 from vibroimpact.study.statistics_table import statistics_rows
 

@@ -7,8 +7,9 @@ from vibroimpact.figures.interactive.pictures import pictures
 from vibroimpact.figures.interactive.study_plots import StudyFiles, direction_of, study_plots
 from vibroimpact.figures.study.checks import limits
 from vibroimpact.figures.study_summary import study_summary
-from vibroimpact.job_log import redirect_output
-from vibroimpact.records import read_attributes, read_table, write_text
+from vibroimpact.io.job_log import redirect_output
+from vibroimpact.io.records import read_attributes, read_table, write_text
+from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.reduction.model_accuracy import mesh_warnings
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.reports.captions import read_caption
@@ -16,7 +17,6 @@ from vibroimpact.reports.equivalent_answer import answers, unmoved
 from vibroimpact.reports.study_content import StudyContent, provenance
 from vibroimpact.reports.study_page import study_page
 from vibroimpact.reports.study_statistics import study_statistics
-from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.study.case_files import read_case
 from vibroimpact.study.run_report import flag_sentences
 from vibroimpact.study.timing import timing_so_far

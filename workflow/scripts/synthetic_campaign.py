@@ -2,10 +2,10 @@
 
 from vibroimpact.campaign.file import write_campaign
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.job_log import redirect_output
-from vibroimpact.provenance import file_attributes
+from vibroimpact.io.job_log import redirect_output
+from vibroimpact.io.provenance import file_attributes
+from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.reduction.model_file import read_model
-from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.study.synthetic_campaign import synthetic_campaign
 
 redirect_output(snakemake.log[0])

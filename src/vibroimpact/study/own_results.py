@@ -7,8 +7,8 @@ from typing import Any
 
 from vibroimpact.config.reading import Config
 from vibroimpact.config.stage_keys import stage_params
-from vibroimpact.provenance import config_digest
-from vibroimpact.records import RecordError, read_attributes
+from vibroimpact.io.provenance import config_digest
+from vibroimpact.io.records import RecordError, read_attributes
 
 from .cases import all_cases
 from .run_files import CONFIG_FILE, PROVENANCE_FILE

@@ -19,7 +19,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TextIO
 
-from vibroimpact.whole_file import HOST, RecordError, folder_problem, process_lives
+from vibroimpact.io.whole_file import HOST, RecordError, folder_problem, process_lives
 
 BOOT = Path("/proc/sys/kernel/random/boot_id")  # on Linux; a new one at each start of the machine
 CLOCK_S = 60.0  # that the clocks of two machines may differ

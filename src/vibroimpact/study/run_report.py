@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from vibroimpact.records import read_table
-from vibroimpact.whole_file import problem_of
+from vibroimpact.io.records import read_table
+from vibroimpact.io.whole_file import problem_of
 
 from .reasons import NOT_MOVED, agreement_sentence
 

@@ -26,7 +26,7 @@ from vibroimpact.config.quantities import (
     Whole,
 )
 from vibroimpact.config.yaml_file import read_yaml
-from vibroimpact.signal_files.signals import ImportProblem
+from vibroimpact.io.signal_files.signals import ImportProblem
 
 NAME = "campaign.yaml"
 # Keys of which a contradiction is told: without a wrong value there would be one too many.
