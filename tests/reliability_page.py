@@ -34,9 +34,12 @@ Every row is stated by a test that passed; faults with one outcome share a row.
 - **Numbers.** A number of a configuration acts, or is refused: a test moves each number of the
   schema and demands another model, force or setting of a stage. Exceptions: velocities and
   criterion of `flow`, for `vibroimpact stability` alone; `record.stress_limit_Pa`, which changes
-  a flag; the rows of matrices in files; the sampling frequency of a force, which must be that of its file. The
-  stiffness of a support with a Hertzian contact acts on its friction alone, and `grid.gap_m`
-  names the case if every support has a gap of its own.
+  a flag; the rows of matrices in files; the sampling frequency of a force, which must be that
+  of its file. The stiffness of a support with a Hertzian contact acts on its friction alone, and
+  `grid.gap_m` names the case if every support has a gap of its own.
+- **Results.** Answers of another configuration than the one in their folder are refused:
+  `vibroimpact equivalent` compares the tables with it, `vibroimpact wear` the records and their
+  model. The other commands read no results.
 - **Campaigns.** Records are compared with each other without a model. No comparison can show a
   swap of two sensors with like gains, the polarity of a sensor across the force that does not
   follow it, and a factor below 4 of a record or below 5 of a channel.

@@ -12,8 +12,13 @@ import yaml
 import vibroimpact as vi
 from tests.support.tiny_study import tiny_values
 from vibroimpact.cli import main
+from vibroimpact.config.reading import load_config
+from vibroimpact.config.stage_keys import stage_params
 from vibroimpact.config.wear import Wear
+from vibroimpact.io.provenance import config_digest
 from vibroimpact.reports.wear_life import wear_sentences, wear_table
+from vibroimpact.study.cases import all_cases
+from vibroimpact.study.run_files import write_run_files
 from vibroimpact.wear.depth import (
     YEAR_S,
     WornShape,
@@ -29,6 +34,14 @@ ROOT = Path(__file__).parents[2]
 RATES = {4.0: (0.0, 1.0e-5), 20.0: (2.0e-3, 1.0e-3)}  # W at the two supports, by load
 
 
+def origin_of(config):
+    """The attributes of a record that say which configuration it is of."""
+    return {
+        "config_digest": config_digest(stage_params(config, "simulate")),
+        "model_digest": config_digest(stage_params(config, "basis")),
+    }
+
+
 @pytest.fixture
 def results(tmp_path):
     """The folder of a study with two seeds of two loads, one support of bars, one of a hole."""
@@ -37,18 +50,17 @@ def results(tmp_path):
     values["supports"][0] |= {"profile": bar}
     config = vi.check_config(values, "a study")
     (tmp_path / "records").mkdir()
-    plain = config.model_dump(mode="json")
-    (tmp_path / "config.yaml").write_text(yaml.safe_dump(plain), encoding="utf-8")
+    write_run_files(tmp_path, config.model_dump(mode="json"), ["snakemake"])
     names = [support.name for support in config.supports]
-    for load, rates in RATES.items():
-        for seed, factor in enumerate((0.5, 1.5)):
-            attributes = {"load_rms_N": load, "gap_m": 1e-4, "seed": seed}
-            record = xr.Dataset(
-                {"wear_work_rate": ("support", factor * np.array(rates), {"units": "W"})},
-                coords={"support": names},
-                attrs=attributes,
-            )
-            vi.write_record(record, tmp_path / "records" / f"load_{load}_seed_{seed}.nc")
+    origin = origin_of(config)
+    for case in all_cases(config.grid):
+        rates = (0.5, 1.5)[case.seed] * np.array(RATES[case.load_rms_N])
+        record = xr.Dataset(
+            {"wear_work_rate": ("support", rates, {"units": "W"})},
+            coords={"support": names},
+            attrs={"load_rms_N": case.load_rms_N, "gap_m": case.gap_m, **origin},
+        )
+        vi.write_record(record, tmp_path / "records" / f"{case.id}.nc")
     return tmp_path
 
 
@@ -227,12 +239,18 @@ def test_without_coefficients_the_depth_is_a_range(results, capsys):
 
 def test_a_growing_gap_takes_the_work_of_the_larger_gap(results):
     """The study has a second gap, at which the supports work twice as hard."""
+    values = load_config(results / "config.yaml").model_dump(mode="json")
+    values["grid"]["gap_m"] = [1e-4, 1.5e-4]
+    write_run_files(results, values, ["snakemake"])
+    origin = origin_of(load_config(results / "config.yaml"))
     for path in sorted((results / "records").glob("*.nc")):
-        record = vi.read_record(path).load()
+        record = vi.read_record(path).load().assign_attrs(origin)
+        path.unlink()
+        vi.write_record(record, path)
         record["wear_work_rate"] = 2.0 * record["wear_work_rate"].assign_attrs(units="W")
         record["wear_work_rate"].attrs["units"] = "W"
         record.attrs["gap_m"] = 1.5e-4
-        vi.write_record(record, path.with_stem(path.stem + "_wide"))
+        vi.write_record(record, path.with_name(path.name.replace("gap_0.0001", "gap_0.00015")))
     keys = {"coefficient_m2_per_N": (2e-14,), "years": 5.0}
     fixed, grown = (wear_life(results, Wear(gap_grows=grows, **keys)) for grows in (False, True))
     ratios = [
@@ -270,3 +288,41 @@ def test_single_steps_have_no_wear_life():
     values["record"] |= {"every_step": True}
     with pytest.raises(vi.ConfigError, match="every_step = True gives no wear work rate"):
         vi.check_config(values, "a study")
+
+
+def answer_after(results, key, value, capsys):
+    """(exit code, errors) of the command after a run of a changed configuration was killed."""
+    values = load_config(results / "config.yaml").model_dump(mode="json")
+    *sections, last = key.split(".")
+    level = values
+    for name in sections:
+        level = level[int(name) if name.isdigit() else name]
+    level[last] = value
+    write_run_files(results, values, ["snakemake"])
+    code = main(["wear", str(results), "--coefficient", "1e-15"])
+    return code, capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [("seed", 5), ("record.duration_s", 9.0), ("supports.0.stiffness_N_per_m", 3e6)],
+)
+def test_records_of_another_configuration_are_refused(results, key, value, capsys, reliability):
+    """A key of the simulation, and one of the model alone."""
+    code, errors = answer_after(results, key, value, capsys)
+    assert code == 1 and "_seed_0.nc: is of another configuration than" in errors
+    assert f"{results / 'provenance.json'} to the end first" in errors
+    reliability.fault(
+        "a run of a changed configuration is killed, and the old records stand",
+        "`vibroimpact wear` refuses them",
+    )
+
+
+def test_keys_that_a_record_does_not_depend_on_may_change(results, capsys):
+    assert answer_after(results, "spectra.overlap", 0.5, capsys) == (0, "")
+
+
+def test_a_study_without_all_its_records_is_refused(results, capsys):
+    assert answer_after(results, "grid.load_rms_N", [4.0], capsys) == (0, "")
+    code, errors = answer_after(results, "grid.load_rms_N", [4.0, 8.0], capsys)
+    assert code == 1 and "load_8_gap_0.0001_seed_0.nc: is missing, one of 2 of the 4" in errors

@@ -16,6 +16,8 @@ from vibroimpact.config.supports import Support
 from vibroimpact.config.wear import Wear
 from vibroimpact.geometry.sections import section_kind
 from vibroimpact.io.records import read_record
+from vibroimpact.study.own_results import own_records
+from vibroimpact.study.run_files import CONFIG_FILE
 
 from .depth import YEAR_S, WornShape, depth_of, volume_of
 from .laws import Archard, EdfMz, WearLaw, published_laws
@@ -62,12 +64,16 @@ def wear_laws(support: Support, wear: Wear) -> Sequence[WearLaw]:
 
 
 def wear_life(folder: str | Path, wear: Wear) -> list[WearRow]:
-    """Return the WearRows of a study's folder. Raises NoWear, ConfigError, RecordError."""
+    """Return the WearRows of a study's folder.
+
+    Raises NoWear, ConfigError, and RecordError where a record is missing or of another
+    configuration than config.yaml there.
+    """
     folder = Path(folder)
-    records = sorted((folder / "records").glob("*.nc"))
-    if not records:
+    if not any((folder / "records").glob("*.nc")):
         raise NoWear(f"{folder / 'records'}: there are no records: give the results of a study")
-    return wear_rows(load_config(folder / "config.yaml"), records, wear)
+    config = load_config(folder / CONFIG_FILE)
+    return wear_rows(config, own_records(folder, config), wear)
 
 
 def wear_rows(config: ConfigPart, records: Sequence[str | Path], wear: Wear) -> list[WearRow]:
