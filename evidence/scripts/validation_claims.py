@@ -6,6 +6,7 @@ from evidence.validation.claims.table import all_claims
 from evidence.validation.figures.claims import claims_of_the_peak, claims_of_the_shape
 from evidence.validation.study_curves import read_curves
 from vibroimpact.config.reading import check_config
+from vibroimpact.figures.drawing import save_plots
 from vibroimpact.io.job_log import redirect_output
 from vibroimpact.io.records import read_table, write_table
 from vibroimpact.reduction.model_file import read_model
@@ -26,6 +27,6 @@ claims = all_claims(
     read_table(snakemake.input.quality),
 )
 write_table([claim.row() for claim in claims], snakemake.output.table)
-for draw in (claims_of_the_peak, claims_of_the_shape):
-    draw(model, gaps).save(Path(snakemake.output.figures[0]).parent)
+plots = [claims_of_the_peak(model, gaps), claims_of_the_shape(model, gaps)]
+save_plots(plots, Path(snakemake.output.figures[0]).parent)
 print("\n".join(f"{claim.verdict}: {claim.claim}" for claim in claims))

@@ -10,6 +10,7 @@ from evidence.validation.convergence import (
 )
 from evidence.validation.figures import convergence as validation_convergence
 from vibroimpact.config.reading import check_config
+from vibroimpact.figures.drawing import save_plots
 from vibroimpact.io.job_log import redirect_output
 from vibroimpact.io.records import write_table
 
@@ -25,7 +26,5 @@ for rows, path in zip(
     (mesh, points, refined, [check.row() for check in checks]), snakemake.output.tables, strict=True
 ):
     write_table(rows, path)
-for sheet in validation_convergence.mesh(mesh) + validation_convergence.contact_points(
-    points, refined
-):
-    sheet.save(Path(snakemake.output.figures[0]).parent)
+plots = validation_convergence.mesh(mesh) + validation_convergence.contact_points(points, refined)
+save_plots(plots, Path(snakemake.output.figures[0]).parent)

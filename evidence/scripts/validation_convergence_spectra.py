@@ -10,6 +10,7 @@ from evidence.validation.convergence import (
 )
 from evidence.validation.figures.convergence_spectra import spectra
 from vibroimpact.config.reading import check_config
+from vibroimpact.figures.drawing import save_plots
 from vibroimpact.io.job_log import redirect_output
 from vibroimpact.io.records import write_table
 from vibroimpact.reduction.reduced_model import build_model
@@ -26,4 +27,4 @@ for rows, path in zip(
     strict=True,
 ):
     write_table(rows, path)
-spectra(averages, leakage, impacts)[0].save(Path(snakemake.output.figures[0]).parent)
+save_plots(spectra(averages, leakage, impacts), Path(snakemake.output.figures[0]).parent)

@@ -12,6 +12,7 @@ from evidence.validation.convergence import (
 )
 from evidence.validation.figures import convergence_runs as figures
 from vibroimpact.config.reading import check_config
+from vibroimpact.figures.drawing import save_plots
 from vibroimpact.io.job_log import redirect_output
 from vibroimpact.io.records import read_table, write_table
 
@@ -31,5 +32,5 @@ for rows, path in zip(
     (periods, table, [check.row() for check in checks]), snakemake.output.tables, strict=True
 ):
     write_table(rows, path)
-for sheet in figures.step(periods, table) + figures.both_axes(table):
-    sheet.save(Path(snakemake.output.figures[0]).parent)
+plots = figures.step(periods, table) + figures.both_axes(table)
+save_plots(plots, Path(snakemake.output.figures[0]).parent)

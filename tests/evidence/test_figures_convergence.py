@@ -18,6 +18,7 @@ from evidence.validation.figures import (
 from evidence.validation.figures import (
     convergence_spectra as validation_convergence_spectra,
 )
+from vibroimpact.figures import drawing
 from vibroimpact.figures.style import COLUMNS, shown
 
 NAMES = (
@@ -167,15 +168,15 @@ def drawn(tmp_path_factory):
     """Return ({name: Sheet}, folder) of all figures, saved."""
     folder = tmp_path_factory.mktemp("figures")
     periods, table = run_tables()
-    sheets = [
+    plots = [
         *validation_convergence.mesh(mesh_rows()),
         *validation_convergence.contact_points(*point_rows()),
         *validation_convergence_runs.step(periods, table),
         *validation_convergence_runs.both_axes(table),
         *validation_convergence_spectra.spectra(*spectra_rows()),
     ]
-    for sheet in sheets:
-        sheet.save(folder)
+    sheets = [*map(drawing.drawn, plots)]
+    drawing.save_plots(sheets, folder)
     return {sheet.name: sheet for sheet in sheets}, folder
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from evidence.validation.convergence.statistics import ENERGY, LARGEST_SCATTER
+from vibroimpact.figures.plot import Axis, Item, Panel, Plot, Series
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.style import (
     BLACK,
@@ -40,7 +41,7 @@ AXIS_NAMES = {
 
 
 def step(periods, table):
-    """Return the Sheet of period error of linear modes and energy residual of impacts.
+    """Return the Plot of period error of linear modes and energy residual of impacts.
 
     Both are drawn against the step. periods: rows of `period_rows`; table: rows of
     `statistics_rows`.
@@ -53,77 +54,59 @@ def step(periods, table):
         " contact's work is replaced by its potential energy (mean over seeds), of order 2 in the"
         " step."
     )
-    sheet = Sheet(
-        "validation_convergence_step",
-        "Step: order 2 in linear motion and in the energy of impacts",
-        caption,
-        [["linear", "energy"]],
-        size=(7.6, 3.9),
-    )
-    linear, energy = sheet.axes.values()
-    linear.set_title("linear modes, Newmark")
+    linear: list[Item] = []
     for rate, colour in ordered_colours(
         sorted({row["steps_per_second"] for row in periods})
     ).items():
         own = [row for row in periods if row["steps_per_second"] == rate]
-        sheet.line(
+        steps, shifts = [row["omega_step"] for row in own], [row["shift"] for row in own]
+        name, tags = f"1/{rate:g} s", {"mode_Hz": [row["mode_Hz"] for row in own]}
+        look = {"colour": colour, "marker": "o", "line": "", "label": name}
+        linear.append(Series(name, steps, shifts, tags, **look))
+    every = [row["omega_step"] for row in periods]
+    angle = np.geomspace(min(every), max(every), 30)
+    exact = 1.0 - 2.0 * np.arctan(0.5 * angle) / angle
+    linear.append(Series("exact", angle, exact, width=0.9, label="trapezoidal rule"))
+    panels = {
+        "linear": Panel(
+            Axis("omega_step", True),
+            Axis("period_shift", True),
             linear,
-            ("omega_step", [row["omega_step"] for row in own]),
-            ("period_shift", [row["shift"] for row in own]),
-            f"1/{rate:g} s",
-            tags={"mode_Hz": [row["mode_Hz"] for row in own]},
-            color=colour,
-            marker="o",
-            linestyle="none",
-            label=f"1/{rate:g} s",
-        )
-    angle = np.geomspace(
-        min(row["omega_step"] for row in periods), max(row["omega_step"] for row in periods), 30
-    )
-    sheet.line(
-        linear,
-        ("omega_step", angle),
-        ("period_shift", 1.0 - 2.0 * np.arctan(0.5 * angle) / angle),
-        "exact",
-        color=BLACK,
-        linewidth=0.9,
-        label="trapezoidal rule",
-    )
-    energy.set_title("energy balance of impacting runs")
-    for (colour, marker), load in zip(
-        LOAD_STYLES, sorted({row["load_rms_N"] for row in table}), strict=False
-    ):
+            "linear modes, Newmark",
+            legend="upper left",
+        ),
+        "energy": Panel(
+            Axis("step_s", True),
+            Axis("energy_defect", True),
+            [
+                *_energies(table),
+                *slope_line((1.0 / 25600, 2.0e-3), 2.0, (1.0 / 25600, 1.0 / 204800)),
+            ],
+            "energy balance of impacting runs",
+            legend="upper left",
+        ),
+    }
+    title = "Step: order 2 in linear motion and in the energy of impacts"
+    return [Plot("validation_convergence_step", title, caption, panels, size=(7.6, 3.9))]
+
+
+def _energies(table):
+    """Return the energy residuals of impacting runs against the step, by load and scheme."""
+    items = []
+    loads = sorted({row["load_rms_N"] for row in table})
+    for (colour, marker), load in zip(LOAD_STYLES, loads, strict=False):
         for axis, scheme, line in (("step", "Newmark", "-"), ("step_exact", "exact", "--")):
             own = [
                 row
                 for row in table
                 if (row["axis"], row["statistic"], row["load_rms_N"]) == (axis, ENERGY, load)
             ]
-            sheet.line(
-                energy,
-                ("step_s", [1.0 / row["value"] for row in own]),
-                ("energy_defect", [row["mean"] for row in own]),
-                f"{scheme} {load:g} N",
-                tags={"load_rms_N": load, "scheme": scheme},
-                color=colour,
-                marker=marker,
-                linestyle=line,
-                label=f"{scheme}, {load:g} N RMS",
-            )
-    slope_line(
-        sheet,
-        energy,
-        ("step_s", "energy_defect"),
-        (1.0 / 25600, 2.0e-3),
-        2.0,
-        (1.0 / 25600, 1.0 / 204800),
-        "order 2",
-    )
-    for axes in (linear, energy):
-        axes.set_xscale("log")
-        axes.set_yscale("log")
-        sheet.legend(axes, loc="upper left")
-    return [sheet]
+            steps, residuals = [1.0 / row["value"] for row in own], [row["mean"] for row in own]
+            tags = {"load_rms_N": load, "scheme": scheme}
+            look = {"colour": colour, "marker": marker, "line": line}
+            look["label"] = f"{scheme}, {load:g} N RMS"
+            items.append(Series(f"{scheme} {load:g} N", steps, residuals, tags, **look))
+    return items
 
 
 def statistics(table, axes_of_study, name, title, remark):
