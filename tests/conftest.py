@@ -17,7 +17,8 @@ from vibroimpact.reduction.reduced_model import build_model
 ROOT = Path(__file__).resolve().parents[1]
 pytest_plugins = ["tests.reliability_page"]
 
-# Examples of a property test: the same in every run; `--hypothesis-profile thorough` takes more.
+# Examples of a property test: the same in every run. `--hypothesis-profile thorough` takes more,
+# `thousand` 1,000 of each.
 FIXED = {
     "derandomize": True,
     "database": None,
@@ -26,6 +27,7 @@ FIXED = {
 }
 settings.register_profile("fast", max_examples=25, **FIXED)
 settings.register_profile("thorough", max_examples=250, **FIXED)
+settings.register_profile("thousand", max_examples=1000, **FIXED)
 settings.load_profile("fast")
 
 

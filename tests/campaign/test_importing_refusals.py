@@ -13,6 +13,7 @@ from scipy import sparse
 from vibroimpact.campaign.file import channel_signal
 from vibroimpact.campaign.importing.assemble import import_folder
 from vibroimpact.campaign.importing.raw_files import absence
+from vibroimpact.campaign.importing.sidecar import read_sidecar
 from vibroimpact.io.foreign_arrays import ForeignFileError
 from vibroimpact.io.matlab_files import load_matlab
 from vibroimpact.io.records import RecordError, read_hdf5_arrays
@@ -307,3 +308,29 @@ def test_a_wanted_file_that_is_no_file_is_called_so(tmp_path):
         "../x.csv": "is outside the folder: put a copy into it, only its own files are read",
     }
     assert {name: absence(tmp_path / name) for name in said} == said
+
+
+def test_problems_of_every_kind_are_told_at_once(tmp_path):
+    """Wrong values hide neither contradictions nor names that are given twice."""
+    sensor = {"name": "F", "point_m": [0, 0, 0], "direction": "+y"}
+    content = {
+        "surprise": 1,
+        "forces": [sensor],
+        "channels": [{**sensor, "point_m": [0, 0]}],
+        "records": [
+            {"name": "low", "file": "a.csv", "gap_m": 2},
+            {"name": "low", "file": "b.csv", "from_s": 3, "to_s": 1, "variables": {"x": "y"}},
+        ],
+    }
+    (tmp_path / "campaign.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
+    with pytest.raises(ImportProblem) as refusal:
+        read_sidecar(tmp_path / "campaign.yaml")
+    told = str(refusal.value).splitlines()
+    starts = (
+        *("channels[0].point_m = [0, 0] has 2 values", "records[0].gap_m = 2 must be"),
+        *("unknown key surprise", "the name 'F' is given to 2", "records[1].to_s = 1 is not after"),
+        *("records[1].variables: 'x' is no force", "2 records are called 'low'"),
+    )
+    assert len(told) == len(starts)
+    for start in starts:
+        assert any(line.startswith(f"{tmp_path / 'campaign.yaml'}: {start}") for line in told), told

@@ -14,11 +14,13 @@ from tests.support.study_tables import (
     summary_rows,
 )
 from vibroimpact import EquivalentError, equivalent
+from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.stage_keys import answer_digest
 from vibroimpact.equivalent_support.answer import NOT_MOVED
 from vibroimpact.equivalent_support.answer_text import as_csv, as_plain, as_text
 from vibroimpact.equivalent_support.study_tables import (
     recommended_rows_of,
+    require_tables_of,
     summary_rows_of,
 )
 from vibroimpact.io.records import read_table, write_table
@@ -55,6 +57,10 @@ def test_tables_of_another_configuration_are_refused(study, study_config, table,
     write_table([row | own for row in read_table(study / table)], study / table)
     write_run_files(study, values, ["snakemake"])
     assert equivalent(study, 4.0, 1.0e-4).groups[0].k.resolved
+    require_tables_of(study, study_config, "study.yaml")
+    other = changed_config(study_config, {"spectra.overlap": 0.5})
+    with pytest.raises(EquivalentError, match=f"{table}: is of another .* other.yaml: run"):
+        require_tables_of(study, other, "other.yaml")
     values["spectra"]["overlap"] = 0.5  # another run has begun and was killed
     write_run_files(study, values, ["snakemake"])
     with pytest.raises(EquivalentError, match=rf"{table}: is of another configuration than .*yaml"):

@@ -1,6 +1,7 @@
 """What a measured tube leaves in its folder, and what is refused, each with its remedy."""
 
 import runpy
+import shutil
 import sys
 from pathlib import Path
 from types import SimpleNamespace
@@ -21,14 +22,17 @@ from vibroimpact.campaign.file import (
 from vibroimpact.campaign.importing.report import import_text
 from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.reading import load_config
+from vibroimpact.config.stage_keys import answer_digest
 from vibroimpact.equivalent_support.answer import EquivalentError
 from vibroimpact.equivalent_support.study_answer import equivalent
 from vibroimpact.figures.discrepancy.quicklook import quicklook
 from vibroimpact.figures.drawing import drawn
+from vibroimpact.figures.study.measured import study_beside
 from vibroimpact.io.records import read_table, write_record, write_table
 from vibroimpact.measured_support.levels import cases_of_records, gaps_of_records
 from vibroimpact.measured_support.usable import identification_problems
 from vibroimpact.reduction.reduced_model import build_model
+from vibroimpact.study.run_files import write_run_files
 
 ROOT = Path(__file__).parents[2]
 SENSORS = ("apex.y", "bend_45.y", "apex.x")
@@ -104,6 +108,17 @@ def test_the_folder_is_read_as_that_of_a_study(results):
     assert along.c.value == pytest.approx(80.0, rel=0.35)
 
 
+def test_tables_of_another_model_are_refused(results, config, tmp_path):
+    copy = Path(shutil.copytree(results, tmp_path / "bench"))
+    values = config.model_dump(mode="json")
+    write_run_files(copy, values, ["snakemake"])
+    assert equivalent(copy, 1.0, 2.8886e-4).groups
+    values["damping"]["other_ratio"] *= 2.0
+    write_run_files(copy, values, ["snakemake"])
+    with pytest.raises(EquivalentError, match="summary.csv: is of another configuration than"):
+        equivalent(copy, 1.0, 2.8886e-4)
+
+
 def test_each_estimate_names_its_record(results):
     rows = read_table(results / "consistency.csv")
     assert {(row["seed"], row["record"]) for row in rows} == {(0, "run 0"), (1, "run 1")}
@@ -129,6 +144,17 @@ def test_figure_5_has_the_equivalent_linear_tube(results):
         for name in ("measured, mean", "linear tube on the equivalent support")
     }
     assert len(set(np.round([*peak.values()], 0))) == 1
+
+
+def test_a_study_of_another_configuration_is_not_drawn_behind(results, config, tmp_path):
+    rows = read_table(results.parent / "mine" / "consistency.csv")
+    for digest, is_drawn in (
+        (answer_digest(config.model_dump(mode="json")), True),
+        ("0123", False),
+    ):
+        own = [row | {"config_digest": digest} for row in rows]
+        write_table(own, tmp_path / "consistency.csv")
+        assert (study_beside(config, tmp_path) is not None) == is_drawn
 
 
 @needs_chromium

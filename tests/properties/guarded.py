@@ -5,6 +5,7 @@ was given, start a program or load code from data.
 """
 
 import os
+import platform
 import re
 import resource
 import signal
@@ -28,6 +29,7 @@ KNOWN = tuple(
     for folder in (*sysconfig.get_paths().values(), sys.base_prefix, sys.prefix)
 ) + tuple(map(os.path.realpath, ("/dev", "/proc", "/sys", "/usr", "/lib")))
 SOURCE = os.path.realpath(Path(__file__).parents[2])
+platform.processor()  # libraries ask for it as they are imported, and it starts `uname` once
 
 _watch: dict[str, Any] = {}
 

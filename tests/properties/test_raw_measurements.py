@@ -506,10 +506,11 @@ TEXTS = [
 
 
 def set_at(content, keys, value):
-    """Set a value inside nested lists and mappings."""
+    """Set a value inside nested lists and mappings, where they are still there."""
     for key in keys[:-1]:
         content = content[key]
-    content[keys[-1]] = value
+    if isinstance(content, (dict, list)):
+        content[keys[-1]] = value
 
 
 def cut_as_described(content, record):

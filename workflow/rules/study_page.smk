@@ -19,6 +19,7 @@ rule _study_page:
         captions=[caption_file(name) for name in figures_of_study()],
     output:
         page=f"{RESULTS}/index.html",
+        wear=[f"{RESULTS}/wear.csv"] if STUDY.wear is not None else [],
     log:
         f"{RESULTS}/logs/study_page.log",
     benchmark:

@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from vibroimpact.config.reading import check_config
+from vibroimpact.config.stage_keys import answer_digest
 from vibroimpact.figures.drawing import save_plots
 from vibroimpact.figures.interactive.measured_plots import measured_plots
 from vibroimpact.figures.interactive.pictures import pictures
@@ -23,7 +24,8 @@ redirect_output(snakemake.log[0])
 values, folder = snakemake.params.model, Path(snakemake.output.page).parent
 config = check_config(values, "the model")
 found = equivalent_of(str(snakemake.input.campaign), config)
-write_measured(found, folder, file_attributes(values, snakemake.params.library))
+attributes = file_attributes(values, snakemake.params.library)
+write_measured(found, folder, attributes, answer_digest(values))
 plots = measured_figures(found, study_beside(config, snakemake.params.study))
 files = save_plots(plots, folder / "figures")
 content = measured_content(found, snakemake.params.name, values, flag_sentences(found.equivalent))

@@ -5,7 +5,7 @@ yields (place, value, text), see checks.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any
 
@@ -46,30 +46,57 @@ def drag_partners(elements: Sequence[LocalElement]) -> Problems:
             )
 
 
-def known_points(
-    structure: Structure,
-    points: Mapping[str, Sequence[float]],
-    excitation: Excitation,
-    record: RecordKeys,
-    supports: Sequence[Support],
-    elements: Sequence[LocalElement],
-    masses: Sequence[PointMass],
+def points_of_force(
+    structure: Structure, points: Mapping[str, Sequence[float]], excitation: Excitation
 ) -> Problems:
-    """Yield a problem unless points that the configuration names are there."""
+    """Yield a problem unless points that the excitation names are there."""
+    yield from _unknown(_force_points(excitation), structure, points)
+
+
+def points_of_sensors(
+    structure: Structure, points: Mapping[str, Sequence[float]], record: RecordKeys
+) -> Problems:
+    """Yield a problem unless points that the sensors name are there."""
+    named = enumerate(record.sensors.points if record.sensors else ())
+    yield from _unknown(
+        ((f"record.sensors.points[{i}]", name) for i, name in named), structure, points
+    )
+
+
+def points_of_supports(
+    structure: Structure, points: Mapping[str, Sequence[float]], supports: Sequence[Support]
+) -> Problems:
+    """Yield a problem unless points that supports name are there."""
+    yield from _unknown(_attached_points("supports", supports), structure, points)
+
+
+def points_of_elements(
+    structure: Structure, points: Mapping[str, Sequence[float]], elements: Sequence[LocalElement]
+) -> Problems:
+    """Yield a problem unless points that elements name are there."""
+    yield from _unknown(_attached_points("elements", elements), structure, points)
+
+
+def points_of_masses(
+    structure: Structure, points: Mapping[str, Sequence[float]], masses: Sequence[PointMass]
+) -> Problems:
+    """Yield a problem unless points that masses name are there."""
+    yield from _unknown(_attached_points("masses", masses), structure, points)
+
+
+def _attached_points(part: str, entries: Sequence[Any]) -> Iterator[tuple[str, str]]:
+    """Yield (place, point) of everything that is attached to a point, or between two."""
+    for i, entry in enumerate(entries):
+        for key in ("point", "other_point"):
+            if getattr(entry, key, None) is not None:
+                yield f"{part}[{i}].{key}", getattr(entry, key)
+
+
+def _unknown(
+    named: Iterable[tuple[str, str]], structure: Structure, points: Mapping[str, Sequence[float]]
+) -> Problems:
+    """Yield a problem for each (place, point) that is not there."""
     names = names_of_points(structure, points)
-    named = list(_force_points(excitation))
-    named += [
-        (f"record.sensors.points[{i}]", name)
-        for i, name in enumerate(record.sensors.points if record.sensors else ())
-    ]
-    for part, entries in (("supports", supports), ("elements", elements)):
-        named += [
-            (f"{part}[{i}].{key}", getattr(entry, key))
-            for i, entry in enumerate(entries)
-            for key in ("point", "other_point")
-            if getattr(entry, key) is not None
-        ]
-    named += [(f"masses[{i}].point", mass.point) for i, mass in enumerate(masses)]
     for place, name in named:
         if name not in names:
             close = get_close_matches(name, names, n=1)

@@ -87,6 +87,13 @@ def sentence(error: Mapping[str, Any], data: Any, whole: type[Section] = Config)
     return f"{place} = {shown(value)} {text}"
 
 
+def follows(error: Mapping[str, Any]) -> bool:
+    """Whether an error says no more than another one: a list that is too short without the values
+    that are wrong.
+    """
+    return error["type"] == "too_short" and len(error["input"]) >= error["ctx"]["min_length"]
+
+
 def shown(value: Any) -> str:
     """Return a value as a reader of YAML would write it, at most 60 characters."""
     plain = isinstance(value, date)

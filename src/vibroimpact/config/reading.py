@@ -15,7 +15,7 @@ from pydantic import TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from .checks import cross_problems
-from .problems import UNKNOWN, ConfigError, path_in, sentence, shown
+from .problems import UNKNOWN, ConfigError, follows, path_in, sentence, shown
 from .schema import Config
 from .yaml_file import read_yaml
 
@@ -60,7 +60,7 @@ def check_config(data: dict[str, Any], source: str) -> Config:
             config = Config.model_validate(read)
             sections = {name: getattr(config, name) for name in Config.model_fields}
         except ValidationError as error:
-            errors = [each for each in error.errors(include_url=False) if not _follows(each)]
+            errors = [each for each in error.errors(include_url=False) if not follows(each)]
             sections = _valid_sections(read, {each["loc"][0] for each in errors})
         problems += [sentence(each, read) for each in errors]
         mended = _mended(read, errors)
@@ -83,13 +83,6 @@ def _valid_sections(data: dict[str, Any], invalid: set) -> dict[str, Any]:
         elif name not in data and not field.is_required():
             sections[name] = field.get_default()
     return sections
-
-
-def _follows(error: Mapping[str, Any]) -> bool:
-    """Whether an error says no more than another one: a list that is too short without the values
-    that are wrong.
-    """
-    return error["type"] == "too_short" and len(error["input"]) >= error["ctx"]["min_length"]
 
 
 def _mended(data: dict[str, Any], errors: Sequence[Mapping[str, Any]]) -> dict[str, Any] | None:

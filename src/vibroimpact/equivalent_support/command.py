@@ -127,6 +127,7 @@ def _answer(options: argparse.Namespace) -> tuple[Answer, ModalModel]:
     from .answer import EquivalentError
     from .estimate import estimate_equivalent
     from .study_answer import equivalent, model_of, study_folder
+    from .study_tables import require_tables_of
 
     config = load_config(options.config) if options.config else None
     if options.estimate:
@@ -142,11 +143,12 @@ def _answer(options: argparse.Namespace) -> tuple[Answer, ModalModel]:
             "name a study, as in `vibroimpact equivalent gv_local --load 5 --gap 0.25e-3`, or ask"
             " for an estimate with --estimate --config FILE"
         )
-    model = (
-        model_of(study_folder(options.study))
-        if config is None
-        else build_model(config, motion_only=True)
-    )
+    folder = study_folder(options.study)
+    if config is None:
+        model = model_of(folder)
+    else:
+        require_tables_of(folder, config, options.config)
+        model = build_model(config, motion_only=True)
     return equivalent(options.study, options.load, options.gap, model), model
 
 

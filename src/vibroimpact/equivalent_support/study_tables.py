@@ -8,10 +8,12 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.config.problems import ConfigError
+from vibroimpact.config.reading import Config
 from vibroimpact.config.stage_keys import answer_digest
 from vibroimpact.config.yaml_file import read_yaml
 from vibroimpact.io.records import RecordError, read_table
 from vibroimpact.study.equivalent_table import DIGEST_COLUMN, equivalent_rows
+from vibroimpact.study.own_results import other_configuration
 from vibroimpact.study.run_files import CONFIG_FILE
 
 from .answer import EquivalentError
@@ -54,10 +56,23 @@ def _require_own(path: Path, rows: list[dict[str, Any]]) -> None:
     except (ConfigError, LookupError, TypeError) as error:
         raise EquivalentError(f"{beside}: is not the configuration of a run ({error})") from error
     if {row[DIGEST_COLUMN] for row in rows} != {current}:
-        raise EquivalentError(
-            f"{path}: is of another configuration than {beside}, whose run did not come to its end:"
-            f" run `snakemake -j2 --configfile {beside}`, or your own file, to the end first"
-        )
+        raise EquivalentError(other_configuration(path, beside))
+
+
+def require_tables_of(folder: Path, config: Config, source: str) -> None:
+    """Raise EquivalentError where the tables of a folder are of another configuration than one that
+    is given. Tables of before the column are taken.
+
+    source: the file of the configuration.
+    """
+    current = answer_digest(config.model_dump(mode="json"))
+    for path in filter(Path.is_file, (folder / SUMMARY, folder / RECOMMENDED)):
+        found = {row.get(DIGEST_COLUMN, current) for row in read_table(path, (DIGEST_COLUMN,))}
+        if found - {current}:
+            raise EquivalentError(
+                f"{path}: is of another configuration than {source}: run `snakemake -j2"
+                f" --configfile {source}` to the end first, or name the configuration of the study"
+            )
 
 
 def _one_schema(row: dict[str, Any], direction: str) -> dict[str, Any]:

@@ -196,6 +196,8 @@ def _array(name: str, word: int, shape: tuple[int, ...], parts: list, order: str
         for (kind, content), each in zip(parts, classes, strict=True)
     ]
     values = numbers[len(indices)]
+    if word & LOGICAL:
+        values = values.astype(bool)
     if word & COMPLEX:
         values = values + 1j * numbers[-1]
     if indices:
@@ -230,7 +232,7 @@ def _sparse(
     count = int(starts[-1]) if len(starts) else -1
     if not 0 <= count <= min(len(rows), len(values)):
         raise ValueError(f"{name!r} claims {count} values and holds {len(values)}")
-    values = values if values.dtype.kind == "c" else values.astype(float)
+    values = values if values.dtype.kind in "bc" else values.astype(float)
     matrix = sparse.csc_array((values[:count], rows[:count], starts), shape=shape)
     matrix.check_format(full_check=True)
     if not matrix.has_canonical_format:

@@ -377,7 +377,7 @@ def read_hdf5_arrays(path: str | Path) -> dict[str, np.ndarray]:
             or item.dtype.kind not in "fiu"
             or name.startswith("#")
             or "MATLAB_empty" in item.attrs
-            or item.attrs.get("MATLAB_class") == b"char"
+            or item.attrs.get("MATLAB_class") in (b"char", b"logical")
         ):
             return
         label = name.replace("/", ".")

@@ -8,16 +8,18 @@ import numpy as np
 
 from vibroimpact.io.records import write_record, write_table
 from vibroimpact.reduction.model_file import write_model
+from vibroimpact.study.equivalent_table import DIGEST_COLUMN
 
 from .equivalent_of import LOAD, RESPONSE, MeasuredSupports, Rows
 
 
 def write_measured(
-    found: MeasuredSupports, folder: str | Path, attributes: Mapping[str, Any] | None = None
+    found: MeasuredSupports, folder: str | Path, attributes: Mapping[str, Any], digest: str
 ) -> None:
     """Write equivalent.csv, consistency.csv, consistency_summary.csv, .nc and model.nc.
 
     attributes: of the netCDF files, see provenance.file_attributes.
+    digest: answer_digest of the configuration of the tube.
 
     Where no record has a load, its columns are NaN and response_rms_m (m) stands behind them.
     """
@@ -28,9 +30,10 @@ def write_measured(
         "consistency": _with_records(found),
     }
     for name, rows in tables.items():
-        write_table(_levels(rows, found.levels), folder / f"{name}.csv")
-    write_record(found.to_dataset().assign_attrs(attributes or {}), folder / "consistency.nc")
-    write_model(found.model, folder / "model.nc", dict(attributes or {}))
+        own = [row | {DIGEST_COLUMN: digest} for row in _levels(rows, found.levels)]
+        write_table(own, folder / f"{name}.csv")
+    write_record(found.to_dataset().assign_attrs(attributes), folder / "consistency.nc")
+    write_model(found.model, folder / "model.nc", dict(attributes))
 
 
 def _with_records(found: MeasuredSupports) -> Rows:

@@ -9,6 +9,7 @@ from typing import Any
 import yaml
 
 import vibroimpact
+from vibroimpact.wear.life import WearRow
 
 from .equivalent_answer import ALL_SUPPORTS, Answer
 from .number_text import digits
@@ -32,6 +33,7 @@ from .study_words import (
     run_sentence,
 )
 from .table import Table
+from .wear_life import wear_sentences, wear_table
 
 MOST_LOADS = 8  # of a table of statistics, per gap
 
@@ -103,6 +105,7 @@ class StudyContent:
     limits: {residual: largest accepted value}.
     unmoved: (group of supports, direction) that the force does not move.
     warnings: sentences on what makes numbers wrong or doubtful as they stand.
+    worn: WearRows of a study with a wear life.
     """
 
     config: Any
@@ -112,6 +115,7 @@ class StudyContent:
     provenance: Provenance
     unmoved: Sequence[tuple[str, str]] = ()
     warnings: Sequence[str] = ()
+    worn: Sequence[WearRow] = ()
 
     kind = "study"
     scatter = "seeds"
@@ -146,7 +150,10 @@ class StudyContent:
 
     def contact(self) -> list[str]:
         """Return contact, wear and stress in sentences."""
-        return contact_sentences(self.config, self.statistics)
+        return [
+            *contact_sentences(self.config, self.statistics),
+            *wear_sentences(self.worn, self.config, self.unit),
+        ]
 
     def at_gap(self, gap_m: float) -> str:
         """Return " at a gap of ... mm", empty where the gap of a case means nothing."""
@@ -181,6 +188,14 @@ class StudyContent:
         return [
             (gap, contact_table(self.statistics, gap, loads, self.unit))
             for gap in self.statistics.gaps
+        ]
+
+    def wear_tables(self) -> list[tuple[float, Table]]:
+        """Return (gap in m, wear life by load, support and land) of each gap."""
+        loads = self.loads_in_tables() if self.worn else []
+        return [
+            (gap, wear_table(self.worn, gap, loads, self.unit))
+            for gap in dict.fromkeys(row.gap_m for row in self.worn)
         ]
 
     def element_tables(self) -> list[tuple[float, Table]]:

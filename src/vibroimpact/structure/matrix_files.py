@@ -75,7 +75,7 @@ def _real(path: Path, name: str, matrix: Any) -> sparse.csr_array:
     if matrix.dtype.kind not in "fiu":
         raise MatrixFileError(f"{path}: {name} holds no numbers: give a matrix of numbers")
     _require_shape(path, name, matrix.shape)
-    values = matrix.data if sparse.issparse(matrix) else matrix
+    values = matrix.data if sparse.issparse(matrix) else np.asarray(matrix, float)
     if not np.all(np.abs(values) <= LARGEST):  # false for what is not a number, too
         raise MatrixFileError(
             f"{path}: {name} holds values that are not finite or beyond {LARGEST:g}: correct them"

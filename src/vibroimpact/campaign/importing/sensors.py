@@ -10,7 +10,7 @@ import numpy as np
 
 from vibroimpact.campaign.file import Channel
 from vibroimpact.campaign.force_kinds import BASE, FORCE
-from vibroimpact.io.signal_files.signals import Signal
+from vibroimpact.io.signal_files.signals import EVEN_WITHIN, WHOLE_WITHIN, Signal
 from vibroimpact.io.units import UnitError, si_factor
 
 from .raw_files import absence
@@ -223,32 +223,38 @@ def _shared_signals(sensors: list[ResolvedSensor]) -> Iterable[str]:
 
 
 def one_rate(sensors: list[ResolvedSensor], measured: Measured) -> float:
-    """Return the sampling frequency in Hz of all signals.
+    """Return the sampling frequency in Hz of all signals: the one given, or of the longest signal.
 
-    Adds to problems where there is none or more than one.
+    Rates are one to six digits, or as far as rounded times can say. Adds to problems where there is
+    none or more than one.
     """
-    rates = {signal.rate: signal for sensor in sensors for signal in sensor.signals if signal.rate}
+    signals = [signal for sensor in sensors for signal in sensor.signals]
+    rates = {signal.rate: signal for signal in signals if signal.rate}
     given = measured.sidecar.sampling_frequency_Hz
+    rate = given or max(rates, key=lambda each: rates[each].values.size, default=1.0)
+    others = {
+        found: signal
+        for found, signal in rates.items()
+        if abs(found / rate - 1.0) > max(WHOLE_WITHIN, EVEN_WITHIN / signal.values.size)
+    }
     if given:
         measured.problems.extend(
-            f"{Path(signal.file).name}, {signal.name}: sampled at {rate:g} Hz, but"
-            f" sampling_frequency_Hz of {NAME} = {given:g}: remove the key"
-            for rate, signal in rates.items()
-            if abs(rate - given) > 1e-6 * given
+            f"{Path(signal.file).name}, {signal.name}: sampled at {other:.9g} Hz, but"
+            f" sampling_frequency_Hz of {NAME} = {given:.9g}: remove the key"
+            for other, signal in others.items()
         )
-        return given
-    if len(rates) > 1:
+    elif others:
         listed = ", ".join(
-            f"{rate:g} Hz ({Path(signal.file).name})" for rate, signal in sorted(rates.items())
+            f"{found:.9g} Hz ({Path(signal.file).name})" for found, signal in sorted(rates.items())
         )
         measured.problems.append(
             f"{NAME}: the signals are sampled at {listed}: resample them to one rate first"
         )
-    if not rates and sensors:
+    elif not rates and sensors:
         measured.problems.append(
             f"{NAME}: no file states its sampling frequency: add sampling_frequency_Hz"
         )
-    return next(iter(rates), 1.0)
+    return rate
 
 
 def read_voltage(measured: Measured) -> list[Signal] | None:

@@ -5,7 +5,8 @@ It also gives what the files do not state.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import copy
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal, get_args
 
@@ -13,7 +14,7 @@ from pydantic import Field, ValidationError
 
 from vibroimpact.campaign.file import Kind
 from vibroimpact.campaign.force_kinds import ForceKind
-from vibroimpact.config.problems import PLAIN_WORDS, ConfigError, shown
+from vibroimpact.config.problems import PLAIN_WORDS, ConfigError, follows, shown
 from vibroimpact.config.quantities import (
     Band_Hz,
     Frequency_Hz,
@@ -28,6 +29,8 @@ from vibroimpact.config.yaml_file import read_yaml
 from vibroimpact.io.signal_files.signals import ImportProblem
 
 NAME = "campaign.yaml"
+# Keys of which a contradiction is told: without a wrong value there would be one too many.
+CONTRADICTING = ("name", "file", "files", "from_s", "to_s", "variables", "support_gap_m")
 Direction = Literal["x", "y", "z", "+x", "+y", "+z", "-x", "-y", "-z"]
 DIRECTIONS = {
     name: tuple((-1.0 if name[0] == "-" else 1.0) * float(name[-1] == axis) for axis in "xyz")
@@ -152,20 +155,45 @@ def read_sidecar(path: str | Path) -> Sidecar:
         data = read_yaml(path)
     except ConfigError as error:
         raise ImportProblem(str(error)) from error
+    problems: list[str] = []
     try:
-        sidecar = Sidecar.model_validate(data)
+        sidecar: Sidecar | None = Sidecar.model_validate(data)
     except ValidationError as error:
-        raise ImportProblem(
-            "\n".join(
-                dict.fromkeys(
-                    _sentence(path, line, data) for line in error.errors(include_url=False)
-                )
-            )
-        ) from error
-    problems = [f"{path}: {problem}" for problem in _contradictions(sidecar)]
-    if problems:
-        raise ImportProblem("\n".join(problems))
+        errors = [each for each in error.errors(include_url=False) if not follows(each)]
+        problems += [_sentence(path, each, data) for each in errors]
+        sidecar = _without(data, errors)
+    if sidecar is not None:
+        problems += [f"{path}: {problem}" for problem in _contradictions(sidecar)]
+    if problems or sidecar is None:
+        raise ImportProblem("\n".join(dict.fromkeys(problems)))
     return sidecar
+
+
+def _without(data: dict[str, Any], errors: Sequence[Mapping[str, Any]]) -> Sidecar | None:
+    """Return the Sidecar without the keys that are wrong, to find what else is; None where more is
+    wrong than keys that may be left out.
+    """
+    rest = copy.deepcopy(data)
+    for error in errors:
+        level, last = None, None
+        value: Any = rest
+        for part in error["loc"]:
+            if not isinstance(value, (dict, list)) or part not in _keys(value):
+                break
+            if isinstance(value, dict):
+                level, last = value, part
+            value = value[part]
+        if level is None or last in CONTRADICTING:
+            return None
+        level.pop(last, None)
+    try:
+        return Sidecar.model_validate(rest)
+    except ValidationError:
+        return None
+
+
+def _keys(value: dict | list) -> Collection[Any]:
+    return value if isinstance(value, dict) else range(len(value))
 
 
 def _contradictions(sidecar: Sidecar) -> Iterator[str]:
@@ -191,6 +219,8 @@ def _contradictions(sidecar: Sidecar) -> Iterator[str]:
                     f"{place}.variables: '{name}' is no force and no channel: they are"
                     f" {', '.join(sensors)}"
                 )
+    if all(record.all_files() for record in sidecar.records):
+        yield from _records_twice(sidecar.records)
     given = {record.support_gap_m and len(record.support_gap_m) for record in sidecar.records}
     if len(given) > 1:
         yield (
@@ -202,8 +232,7 @@ def _contradictions(sidecar: Sidecar) -> Iterator[str]:
 def record_names(records: tuple[Record, ...]) -> list[str]:
     """Return the name of each record: its own, else that of its first file.
 
-    A file that is cut into several records gives `run`, `run_2`, `run_3`. Raises ImportProblem
-    where a name is given twice.
+    A file that is cut into several records gives `run`, `run_2`, `run_3`.
     """
     names: list[str] = []
     for record in records:
@@ -213,16 +242,14 @@ def record_names(records: tuple[Record, ...]) -> list[str]:
             for other in records[: len(names)]
         )
         names.append(record.name or (f"{stem}_{earlier + 1}" if earlier else stem))
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise ImportProblem(
-            "\n".join(
-                f"{NAME}: {names.count(name)} records are called '{name}': give each a name of its"
-                " own"
-                for name in twice
-            )
-        )
     return names
+
+
+def _records_twice(records: tuple[Record, ...]) -> Iterator[str]:
+    """Yield a sentence for each name that several records have."""
+    names = record_names(records)
+    for name in sorted({name for name in names if names.count(name) > 1}):
+        yield f"{names.count(name)} records are called '{name}': give each a name of its own"
 
 
 def _sentence(path: str | Path, error: Mapping, data: Any) -> str:

@@ -7,11 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
+from vibroimpact.config.stage_keys import answer_digest
 from vibroimpact.equivalent_support.homogeneity import effects_with_a_scale
 from vibroimpact.io.records import read_table
 from vibroimpact.spectra.welch import driven_axis
 from vibroimpact.study.case_files import read_case
 from vibroimpact.study.cases import case_from_id
+from vibroimpact.study.equivalent_table import DIGEST_COLUMN
 
 from .cases_of_gap import shown_gap
 from .equivalent import figure_13_equivalent_support
@@ -35,12 +37,17 @@ class StudyBeside:
 
 
 def study_beside(config, folder):
-    """Return the StudyBeside of a folder of results, None where it holds no finished study."""
+    """Return the StudyBeside of a folder of results, None where it holds no finished study, or one
+    of another configuration.
+    """
     table = Path(folder) / "consistency.csv"
     if config.identification is None or not table.is_file():
         return None
+    rows, own = read_table(table, (DIGEST_COLUMN,)), answer_digest(config.model_dump(mode="json"))
+    if {row.get(DIGEST_COLUMN, own) for row in rows} != {own}:
+        return None
     paths = sorted(map(str, (Path(folder) / "spectra").glob("*.nc")))
-    return StudyBeside(config, read_table(table), paths)
+    return StudyBeside(config, rows, paths)
 
 
 def measured_figures(found, beside=None):
