@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from vibroimpact.figures.plot import Axis, Item, Mark, Panel, Plot, Series, Text
@@ -40,7 +42,8 @@ def slope_line(start, order, ends) -> list[Item]:
     """
     x = np.array(ends, dtype=float)
     y = start[1] * (x / start[0]) ** order
-    words, look = f"order {order:g}", {"shift": (3, -2), "align": ("left", "top"), "size": 8.5}
+    words = f"order {order:g}"
+    look: dict[str, Any] = {"shift": (3, -2), "align": ("left", "top"), "size": 8.5}
     return [
         Series(words, x, y, colour=GREY, line=":", width=1.2),
         Text(words, x[0], y[0], colour=GREY, **look),
