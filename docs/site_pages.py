@@ -18,8 +18,7 @@ import vibroimpact
 
 # The packages that a user's own program imports; the others serve the workflow.
 PUBLIC = (
-    "units",
-    "records",
+    "io",
     "geometry",
     "config",
     "structure",

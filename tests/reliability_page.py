@@ -12,39 +12,37 @@ ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "reliability.md"
 RELIABILITY = pytest.StashKey[list]()
 HEADERS = {
-    "faults": ("fault", "what happens"),
+    "faults": ("fault", "outcome"),
     "inputs": ("input", "tried", "refused with a sentence", "right"),
-    "scale": ("what", "measured"),
+    "scale": ("quantity", "measured"),
 }
 TITLES = {
     "faults": "Faults",
     "inputs": "Input",
     "scale": "Scale",
 }
+SEPARATOR = "; "  # between the faults of one outcome
 INTRODUCTION = """# Reliability
 
 <!-- Written by `make reliability`: do not edit. -->
 
-Every row is stated by a test that passed. `make reliability` runs these tests and writes the page.
+Every row is stated by a test that passed; faults with one outcome share a row.
 
-A profile of Snakemake is a program, and so is a configuration with `__use_yte__` where the default
-profile is switched off (`--workflow-profile none`): Snakemake runs it before this package reads it.
-Run `vibroimpact check FILE` on a file of others first; it runs nothing.
-
-Answers of another configuration than the one in their folder are refused: `vibroimpact equivalent`
-compares the tables with it, `vibroimpact wear` the records and their model. The other commands read
-no results.
-
-A number that a configuration states acts, or is refused: a test moves each number of the schema and
-demands another model, force or setting of a stage. The exceptions are the section `flow`, which
-`vibroimpact stability` alone reads; `record.stress_limit_Pa`, which changes a flag; the rows of
-matrices in files; and the sampling frequency of a force, which must be that of its file. The
-stiffness of a support with a Hertzian contact acts on its friction alone, and `grid.gap_m` names
-the case where every support has a gap of its own.
-
-Records of a campaign are held to each other without a model. What no comparison can show: a swap of
-two sensors with like gains, the polarity of a sensor across the force that does not follow it, and
-a factor below 4 of a record or below 5 of a channel.
+- **Programs.** A profile of Snakemake is a program, and so is a configuration with `__use_yte__`
+  under `--workflow-profile none`: Snakemake runs it before this package reads it. Run
+  `vibroimpact check FILE` on files of others first; it runs nothing.
+- **Numbers.** A number of a configuration acts, or is refused: a test moves each number of the
+  schema and demands another model, force or setting of a stage. Exceptions: velocities and
+  criterion of `flow`, for `vibroimpact stability` alone; `record.stress_limit_Pa`, which changes
+  a flag; the rows of matrices in files; the sampling frequency of a force, which must be that
+  of its file. The stiffness of a support with a Hertzian contact acts on its friction alone, and
+  `grid.gap_m` names the case if every support has a gap of its own.
+- **Results.** Answers of another configuration than the one in their folder are refused:
+  `vibroimpact equivalent` compares the tables with it, `vibroimpact wear` the records and their
+  model. The other commands read no results.
+- **Campaigns.** Records are compared with each other without a model. No comparison can show a
+  swap of two sensors with like gains, the polarity of a sensor across the force that does not
+  follow it, and a factor below 4 of a record or below 5 of a channel.
 """
 
 
@@ -126,6 +124,18 @@ def page(rows):
     parts = [INTRODUCTION]
     for section, header in HEADERS.items():
         table = sorted({tuple(cells) for name, cells in rows if name == section})
+        if section == "faults":
+            table = by_outcome(table)
         lines = [" | ".join(cells) for cells in (header, ["---"] * len(header), *table)]
         parts.append(f"## {TITLES[section]}\n\n" + "\n".join(f"| {line} |" for line in lines))
     return "\n".join(parts[:1]) + "\n" + "\n\n".join(parts[1:]) + "\n"
+
+
+def by_outcome(rows):
+    """Return rows (fault, outcome) with the faults of one outcome in one cell, in the order of
+    the first fault.
+    """
+    faults = {}
+    for fault, outcome in rows:
+        faults.setdefault(outcome, []).append(fault)
+    return [(SEPARATOR.join(group), outcome) for outcome, group in faults.items()]

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from .families import same_family
-from .right_names import EXACT_ALIASES, right_names
+from .right_names import exact_alias, right_names
 
 STRONG, MEDIUM, FAINT = 3.0, 1.0, 0.3  # floors of excess
 PARTLY = 0.5  # closed share from which a partial explanation leaves the question open rightly
@@ -100,9 +100,12 @@ def strength_of(truth: dict[str, Any]) -> float:
 def kind_of(truth: dict[str, Any]) -> str:
     """Return the kind of a campaign. Strong and medium go by the strength that resulted; whatever
     is weaker than medium counts as weak or faint, but for faults, which are no effects of the
-    structure. A pair of which one effect is weaker than medium beside the other is masked.
+    structure. A pair of which one effect is weaker than medium beside the other is masked. What was
+    drawn as an exact alias and is none, such as the gap of one support, goes by its strength.
     """
     kind, floors = str(truth["kind"]), strength_of(truth)
+    if kind == "exact_alias" and not any(exact_alias(*effect) for effect in truth["effects"]):
+        kind = "strong"
     if kind in NO_EFFECT or np.isnan(floors):
         return kind
     if floors < MEDIUM:
@@ -143,20 +146,21 @@ def _answers(verdict, truth, hidden, sets):
         "flagged": flagged,
         "flag_not_due": flagged and kind != "fault" and not SENSOR & set(hidden),
         "family": family,
-        "both": _both(kind, hidden, sets),
+        "both": _both(truth["effects"], sets),
     }
 
 
-def _both(kind, hidden, sets):
+def _both(effects, sets):
     """Return whether aliases are told rightly: exact ones both, near ones both or the right one
     alone.
     """
-    if len(hidden) != 1:
+    if len(effects) != 1:
         return False
+    [(name, parameters)] = effects
     alone = {row[0] for row in sets if len(row) == 1}
-    if kind == "exact_alias":
-        return {hidden[0], EXACT_ALIASES.get(hidden[0])} <= alone
-    return hidden[0] in alone and (NEAR_ALIASES.get(hidden[0]) in alone or len(sets) == 1)
+    if (alias := exact_alias(name, parameters)) is not None:
+        return {name, alias} <= alone
+    return name in alone and (NEAR_ALIASES.get(name) in alone or len(sets) == 1)
 
 
 def _held(verdict):

@@ -9,9 +9,8 @@ from pathlib import Path
 from jinja2 import Environment, StrictUndefined
 
 from vibroimpact.effects.registry import effects_in_words
-from vibroimpact.reports.discrepancy_page import embedded
 from vibroimpact.reports.number_text import digits, percent
-from vibroimpact.reports.page_style import STYLE
+from vibroimpact.reports.page import STYLE, embedded
 
 TEMPLATE = Path(__file__).with_suffix(".html")
 

@@ -10,6 +10,13 @@ NO_NAMES = ("nothing", "out_of_catalogue", "other_law")  # kinds whose hidden ef
 FAULTS_WITH_NAMES = ("sensor_gain", "sensor_delay")
 
 
+def exact_alias(name: str, parameters: dict[str, Any]) -> str | None:
+    """Return the effect that a hidden one can not be told from, None where there is none: a gap of
+    all supports is a gain common to force and responses, a gap of one is not.
+    """
+    return EXACT_ALIASES.get(name) if "all" in parameters.values() else None
+
+
 def right_names(truth: dict[str, Any]) -> list[list[str]]:
     """Return the lists of ids, each sorted, that are a right and whole answer: what is hidden, its
     exact alias, and either with a gain of a channel that is far off by chance. Empty where nothing
@@ -22,9 +29,9 @@ def right_names(truth: dict[str, Any]) -> list[list[str]]:
         names = []
     found = [names] if names else []
     for place, (name, parameters) in enumerate(truth["effects"] if names else ()):
-        if name in EXACT_ALIASES and "all" in parameters.values():
+        if (alias := exact_alias(name, parameters)) is not None:
             others = [own for at, (own, _) in enumerate(truth["effects"]) if at != place]
-            found.append(sorted([*others, EXACT_ALIASES[name]]))
+            found.append(sorted([*others, alias]))
     if any(abs(gain - 1.0) > STRAY_GAIN for gain in truth.get("gains", ())):
         found += [sorted({*row, "sensor_gain"}) for row in found or [[]]]
     return found

@@ -15,7 +15,7 @@ def description(cores, peak_GFLOPs, vector_bits):
     features = llvmlite.binding.get_host_cpu_features()
     return {
         "processor": _processor(),
-        "cores used": f"{len(cores)} (every time but the last table's was taken on one)",
+        "cores used": f"{len(cores)} (every time but that of two processes is of one)",
         "caches": ", ".join(_caches()) or "unknown",
         "vector instructions": (
             ", ".join(name for name in VECTORS if features.get(name)) or "unknown"

@@ -5,59 +5,59 @@ run.
 import numpy as np
 
 from evidence.benchmarks.check import CHECK_S, FIRST_IMPACTS_S, NAMES
-from evidence.benchmarks.pairs import PEAK
+from evidence.benchmarks.pairs import BATCH, ONE_RUN, PEAK
 from evidence.benchmarks.problem import BAND_HZ, GAP_M, LOAD_N, RATE, SMALL_BASIS
 from evidence.benchmarks.table import NANOSECONDS, SECONDS, three_digits, typed
 
-RECORD_S = 49.0
 SMALL_TO_HZ = SMALL_BASIS["basis.free_modes_to_Hz"]
 
 INTRODUCTION = f"""# Performance
 
-Written by `make benchmark`; do not edit. Numbers of `results/benchmark/benchmark.csv`, \
-`growth.csv`, `peers.csv` and `machine.csv`.
+Written by `make benchmark`; do not edit. All numbers, with smallest and largest, are in
+`results/benchmark/`: `benchmark.csv`, `growth.csv`, `peers.csv`, `machine.csv`.
 
-The problem is the study's stand-in tube: a force in {BAND_HZ[0]:g} to {BAND_HZ[1]:g} Hz at 45 \
-degrees of the bend, two plates
-of five contact points, gap {GAP_M * 1e3:.3f} mm. At {LOAD_N:g} N RMS, the study's highest load, \
-a plate bears a force half
-of the time. "Modes" are free modes and the residual vectors of the contacts: 99 in the study, 61 \
-with
-free modes to {SMALL_TO_HZ:g} Hz. Residual vectors reach 130 kHz and set the step of every \
-explicit method; one
-case therefore has free modes alone.
+The problem is the stand-in tube under a force in {BAND_HZ[0]:g} to {BAND_HZ[1]:g} Hz at 45 \
+degrees of the bend, with two
+plates of five contact points and a gap of {GAP_M * 1e3:.3f} mm. At {LOAD_N:g} N RMS, the highest \
+load of the study, a
+plate bears a force half of the time. "Modes" are free modes and residual vectors of the contacts:
+99 in the study, 61 with free modes to {SMALL_TO_HZ:g} Hz. Residual vectors reach 130 kHz and set \
+the step
+of every explicit method, so one case has free modes alone.
 
-- Every code solves the same problem. Its displacement at three sensors must agree before its time
-  counts: without contact ({CHECK_S:g} s), over the first impacts ({FIRST_IMPACTS_S:g} s), and in \
-RMS. Obstacles are off the
+- **Agreement first.** Before a code is timed, its displacement at three sensors must agree with \
+ours:
+  without contact ({CHECK_S:g} s), over the first impacts ({FIRST_IMPACTS_S:g} s), and in RMS. \
+Obstacles are off the
   axis, so that both directions touch.
-- Times are CPU time of one core without compilation. Ours include set-up, output filter, \
-statistics,
-  energies and records (`integrate_batch`); the peers keep three displacements. Forces are made
-  beforehand.
-- A ratio comes from runs that alternate in one process: median (smallest to largest). Slow peers \
-run a
-  short stretch with less contact, which favours them.
-- Ours integrates eight runs in a 512-bit vector. One run alone costs nearly as much as eight. \
-The plain
-  loop, and JAX without its batch, take one case after the other.
-- Ours, the plain loop, JAX and Exudyn step with Newmark, {RATE} steps per second. "At the \
-study's step"
-  is the scheme and rate of `config/study.yaml` ([what a step is worth](#what-a-step-is-worth)).
-- The FMA peak is that of the core for the step's own arithmetic, without output filter, \
-statistics and
-  energies (`evidence/benchmarks/peak.py`).
-- Absolute times hold for this machine. Compare ratios.
+- **Times** are CPU time of one core without compilation, of a batch per run. Ours include set-up,
+  output filter, statistics, energies and records; the peers keep three displacements.
+- **Ratios**, median (smallest to largest), come from runs that alternate in one process. Slow \
+peers run
+  a short stretch with less contact, which favours them. Absolute times hold for this machine.
+- **Batches.** Eight runs share a 512-bit vector; one run costs nearly as much. The plain loop, and
+  JAX without its batch, take one run at a time.
+- **Step.** Ours, the plain loop, JAX and Exudyn use Newmark at {RATE} steps per second; the study
+  uses [another step](#choice-of-the-step).
+- **FMA peak**: the arithmetic of the step alone at the peak rate of the core.
+"""
+
+# The ratios of the page; the CSV file has those to the other batches too.
+COMPARED = (ONE_RUN, BATCH.format(8))
+
+OWN_CELL = """CPU s per simulated s; nanoseconds per step of Newmark; share of the FMA peak.
 """
 
 GROWTH = {
-    "modes": "Batch of 8; the residual vectors of the contacts stay, free modes are added.",
-    "contact points": "Batch of 8, free modes alone, points of the two plates together.",
-    "supports": "Batch of 8, free modes alone, five points each.",
-    "runs side by side": "Per run.",
-    "duration, s": "Batch of 8; set-up and the filter's run-out weigh on short records.",
-    "processes": "Wall-clock time per run of a batch of 8 in each process, a core each.",
+    "modes": "free modes added to the residual vectors of the contacts",
+    "contact points": "points of the two plates together, free modes alone",
+    "supports": "five points each, free modes alone",
+    "runs side by side": "61 modes",
+    "duration, s": "set-up and run-out of the filter weigh on short records",
+    "processes": "wall-clock time, a batch of 8 and a core each",
 }
+
+BATCH_OF_8 = "Batch of 8, 20 N, unless the number of runs is varied.\n"
 
 
 def write_page(path, rows, growth, peers, absent, machine, figure, work_precision=""):
@@ -72,13 +72,13 @@ def write_page(path, rows, growth, peers, absent, machine, figure, work_precisio
         INTRODUCTION,
         f"![Ratios of CPU time]({figure})\n",
         "## Machine\n",
-        _table(("what", "on this machine"), machine.items()),
+        _table(("property", "this machine"), machine.items()),
     ]
-    for case in dict.fromkeys(row["case"] for row in rows):
-        parts += [f"## {case}\n", _times(case, rows), _steps(case, rows), _peak(case, rows)]
-    parts += ["## Growth\n", *_growth(growth), _cores(rows)] if growth else []
+    parts += ["## Ours\n", OWN_CELL, _own_times(rows), "## The peers\n"]
+    parts += [_ratios(rows, quantity) for quantity in COMPARED]
+    parts += ["## Growth\n", BATCH_OF_8, _growth(growth), _cores(rows)] if growth else []
     parts += [work_precision] if work_precision else []
-    parts += ["## What each peer solves, and whether it agrees\n", *_agreement(peers)]
+    parts += ["## Models and agreement of the peers\n", *_agreement(peers)]
     parts += (
         ["Not measured:\n\n" + "".join(f"- {sentence}\n" for sentence in absent)] if absent else []
     )
@@ -102,104 +102,61 @@ def _ratio(row):
     return f"{middle} ({low} to {high})"
 
 
-def _span(seconds):
-    """Return seconds as people say them."""
-    for limit, factor, unit in (
-        (120.0, 1.0, "s"),
-        (7200.0, 60.0, "min"),
-        (float("inf"), 3600.0, "h"),
-    ):
-        if seconds < limit:
-            return f"{seconds / factor:.3g} {unit}"
+def _own_times(rows):
+    """Return the table of ours: CPU s per simulated s by case, ns per step, share of the peak."""
+    cases = list(dict.fromkeys(row["case"] for row in rows if row["unit"] == SECONDS))
+    lines = []
+    for quantity in dict.fromkeys(row["quantity"] for row in rows if row["unit"] == SECONDS):
+        found = {
+            case: [row for row in rows if (row["case"], row["quantity"]) == (case, quantity)]
+            for case in cases
+        }
+        lines.append((_short(quantity), *(_own_time(found[case]) for case in cases)))
+    return _table(("runs", *cases), lines)
 
 
-def _times(case, rows):
-    """Return the table of CPU seconds and ratios of a case."""
-    rows = [row for row in rows if row["case"] == case and row["unit"] == SECONDS]
-    quantities = list(dict.fromkeys(row["quantity"] for row in rows))
-    lines = [
-        (f"ours, {quantity}", cost, _span(RECORD_S * cost), *[""] * len(quantities))
-        for quantity, cost in _ours(rows).items()
+def _own_time(rows):
+    """Return the cell of a case: s per simulated s, ns per step, share of the FMA peak."""
+    costs = [row["ours_median"] for row in rows if row["unit"] == SECONDS]
+    steps = [
+        row["ours_median"] for row in rows if row["unit"] == NANOSECONDS and row["peer"] != PEAK
     ]
-    for peer in dict.fromkeys(row["peer"] for row in rows):
-        found = {row["quantity"]: row for row in rows if row["peer"] == peer}
-        cost = next(iter(found.values()))["peer_median"]
-        lines.append(
-            (
-                peer,
-                cost,
-                _span(RECORD_S * cost),
-                *[_ratio(found[quantity]) if quantity in found else "" for quantity in quantities],
-            )
-        )
-    return _table(
-        (
-            "code",
-            "CPU s per simulated s",
-            f"{RECORD_S:g} s record",
-            *(f"/ ours, {quantity}" for quantity in quantities),
-        ),
-        lines,
-    )
+    shares = [100.0 * row["ratio_median"] for row in rows if row["peer"] == PEAK]
+    parts = [three_digits(float(np.median(costs)))] if costs else []
+    parts += [f"{np.median(steps):.0f}"] if steps else []
+    parts += [f"{share:.2g} %" for share in shares]
+    return ", ".join(parts)
 
 
-def _steps(case, rows):
-    """Return the sentence of nanoseconds per step."""
-    rows = [
-        row
-        for row in rows
-        if row["case"] == case and row["unit"] == NANOSECONDS and row["peer"] != PEAK
-    ]
-    parts = [
-        f"ours, {quantity.partition(',')[0]}, {value:.0f}"
-        for quantity, value in _ours(rows).items()
-    ]
-    parts += [
-        f"{peer} {value:.0f}"
-        for peer, value in {row["peer"]: row["peer_median"] for row in rows}.items()
-    ]
-    return f"Nanoseconds per step and run: {'; '.join(parts)}.\n" if rows else ""
+def _ratios(rows, quantity):
+    """Return the table of the peers: CPU time over ours by case, for one way that ours ran."""
+    rows = [row for row in rows if row["unit"] == SECONDS and row["quantity"] == quantity]
+    cases = list(dict.fromkeys(row["case"] for row in rows))
+    found = {(row["peer"], row["case"]): _ratio(row) for row in rows}
+    peers = dict.fromkeys(row["peer"] for row in rows)
+    lines = [(peer, *(found.get((peer, case), "") for case in cases)) for peer in peers]
+    return _table((f"/ ours, {_short(quantity)}", *cases), lines)
 
 
-def _peak(case, rows):
-    """Return the sentence of the fraction of the FMA peak."""
-    found = [row for row in rows if row["case"] == case and row["peer"] == PEAK]
-    shares = [
-        [f"{100.0 * row[f'ratio_{name}']:.2g}" for name in ("median", "min", "max")]
-        for row in found
-    ]
-    parts = [
-        f"{middle} % ({low} to {high} %) as {row['quantity'].partition(',')[0]}"
-        for row, (middle, low, high) in zip(found, shares, strict=True)
-    ]
-    return (
-        f"At the FMA peak a step takes {found[0]['peer_median']:.0f} ns. Ours uses"
-        f" {', '.join(parts)}.\n"
-        if found
-        else ""
-    )
+def _short(quantity):
+    """Return how ours ran; every time is that of one run."""
+    return quantity.removesuffix(", per run")
 
 
 def _growth(growth):
-    """Yield a table per curve."""
-    for varied in dict.fromkeys(row["varied"] for row in growth):
-        others = [name for name in ("modes", "contact points") if name != varied]
-        lines = [
-            (
-                row["value"],
-                *(row[name.replace(" ", "_")] for name in others),
-                100.0 * row["contact_fraction"],
-                row["ns_per_step_median"],
-                f"{three_digits(row['ns_per_step_min'])} to {three_digits(row['ns_per_step_max'])}",
-            )
-            for row in growth
-            if row["varied"] == varied
-        ]
-        yield f"{GROWTH.get(varied, '')}\n"
-        yield _table(
-            (varied, *others, "time in contact, %", "ns per step and run", "smallest to largest"),
-            lines,
+    """Return the table of all curves, one in a line."""
+    curves = {}
+    for row in growth:
+        curves.setdefault(row["varied"], []).append(row)
+    lines = [
+        (
+            f"{varied}: {GROWTH[varied]}",
+            ", ".join(f"{point['value']:g}" for point in points),
+            ", ".join(three_digits(point["ns_per_step_median"]) for point in points),
         )
+        for varied, points in curves.items()
+    ]
+    return _table(("varied", "values", "ns per step and run"), lines)
 
 
 def _cores(rows):
@@ -212,35 +169,25 @@ def _cores(rows):
 
 
 def _agreement(peers):
-    """Yield a paragraph of what the peers solve and a table of the checks."""
-    alike = {}
+    """Yield a paragraph of what the peers solve and a table of their largest differences."""
+    alike, found = {}, {}
     for row in peers:
         alike.setdefault(row["note"], {})[f"{row['peer']} {row['version']}"] = None
+        found.setdefault(row["peer"], []).append(row)
     yield "".join(f"- {'; '.join(codes)}: {note}.\n" for note, codes in alike.items())
     lines = [
         (
-            row["case"],
-            row["peer"],
-            row["simulated_s"],
-            100.0 * row["contact_fraction"],
-            *(f"{row[name]:.0e}" for name in NAMES),
-            row["failure"] or row["agrees"],
+            peer,
+            str(len(cases)),
+            *(f"{max(row[name] for row in cases):.0e}" for name in NAMES),
+            "; ".join(dict.fromkeys(row["failure"] or row["agrees"] for row in cases)),
         )
-        for row in peers
+        for peer, cases in found.items()
     ]
     limits = (
         [f"{name.replace('_', ' ')} (to {peers[0][f'{name}_tolerance']:.0e})" for name in NAMES]
         if peers
         else NAMES
     )
-    yield _table(
-        ("case", "peer", "s per timed run", "time in contact, %", *limits, "agrees"), lines
-    )
-
-
-def _ours(rows):
-    """Return {quantity: the middle of the medians of ours beside each peer}."""
-    found = {}
-    for row in rows:
-        found.setdefault(row["quantity"], []).append(row["ours_median"])
-    return {quantity: float(np.median(values)) for quantity, values in found.items()}
+    yield "Largest relative difference from ours over the cases:\n"
+    yield _table(("peer", "cases", *limits, "agrees"), lines)

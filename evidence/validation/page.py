@@ -4,7 +4,7 @@ from collections import Counter
 from html import escape
 from pathlib import Path
 
-from vibroimpact.reports.page_style import STYLE
+from vibroimpact.reports.page import STYLE
 
 
 def validation_page(

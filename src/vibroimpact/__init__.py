@@ -57,6 +57,7 @@ PUBLIC = {
     "Verdict": "verdict.content",
     "virtual_supports": "diagnosis.supports",
     "stability": "flow.stability",
+    "flow_sweep": "study.flow_sweep",
     "read_record": "io.records",
     "write_record": "io.records",
     "configurations": "study_folder.shared_files",

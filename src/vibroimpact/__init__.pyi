@@ -51,6 +51,7 @@ from .spectra.welch import segment_spectra as segment_spectra
 from .study.cases import Case as Case
 from .study.cases import all_cases as all_cases
 from .study.cases import cases_of_load as cases_of_load
+from .study.flow_sweep import flow_sweep as flow_sweep
 from .study.in_process import case_spectra as case_spectra
 from .study.in_process import identify_support as identify_support
 from .study.in_process import run_study as run_study

@@ -14,6 +14,7 @@ from pathlib import Path
 from vibroimpact import __version__, stability_command
 from vibroimpact.diagnosis import diagnose_command, supports_command
 from vibroimpact.equivalent_support.command import add_arguments
+from vibroimpact.equivalent_support.contact_export import command as contact_command
 from vibroimpact.wear import command as wear_command
 
 # Read when numpy is first imported. The matrices are small: threads would wait for each other, and
@@ -162,17 +163,29 @@ def _parser() -> argparse.ArgumentParser:
         description="Print the ratio of the effective to the critical velocity of each mode of a"
         " tube in a cross flow, with all its supports holding and without some of them; with a"
         " fluid-elastic force also the velocity at which an eigenvalue begins to grow. The section"
-        " flow of the configuration gives velocities, density and criterion. Nothing is simulated.",
+        " flow of the configuration gives velocities, density and criterion. Nothing is simulated,"
+        " unless --simulate asks for it.",
     )
     stability_command.add_arguments(stability)
     wear = commands.add_parser(
         "wear",
         help="print the depth of wear at the supports of a finished study",
-        description="Print how deep each support wears the wall of the tube, from the work rates of"
-        " a finished study and wear coefficients: Archard's law, and the shape of the support. One"
-        " line per load and gap, for the support that wears most; --csv writes all.",
+        description="Print how deep each land of the supports wears the wall of the tube, from the"
+        " work rates of a finished study: Archard's law or the slowing law EDF_MZ, and the shape of"
+        " the support. One line per load and gap, for the land that wears deepest, as a range over"
+        " the laws; --csv writes all. The section wear of the study's configuration gives what no"
+        " argument gives.",
     )
     wear_command.add_arguments(wear)
+    contact = commands.add_parser(
+        "contact",
+        help="write the contact of the supports for another finite-element program",
+        description="Write gaps and contact stiffnesses of the supports of a configuration as"
+        " nonlinear elements of another program, at a gap of the case. For the equivalent linear"
+        " springs see `vibroimpact equivalent --export`. The exit code is 1 where a law is left"
+        " out.",
+    )
+    contact_command.add_arguments(contact)
     for name, command, what in (
         ("schema", _schema, "print the JSON schema of a study configuration"),
         ("reference", _reference, "print the reference of every configuration key as Markdown"),

@@ -12,9 +12,29 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from .config.schema import Config
     from .flow.stability import Eigenvalues, Stability, StabilityRow
 
-HEADER = ("velocity", "not holding", "mode", "f", "zeta", "V_eff", "V_c", "V_eff / V_c")
+SIMULATED = (
+    "load",
+    "gap",
+    "k",
+    "V_c open",
+    "V_c with k and c",
+    "V_c closed",
+    "onset from rest",
+    "onset from a large motion",
+)
+HEADER: tuple[str, ...] = (
+    "velocity",
+    "not holding",
+    "mode",
+    "f",
+    "zeta",
+    "V_eff",
+    "V_c",
+    "V_eff / V_c",
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -42,6 +62,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="so many supports at most do not hold, in every combination (default: 1)",
     )
     parser.add_argument(
+        "--simulate",
+        action="store_true",
+        help="simulate the tube with its gaps at every velocity too, and print where its response"
+        " leaves that without flow, beside the critical velocities of equivalent linear tubes"
+        " (needs flow.coupling)",
+    )
+    parser.add_argument(
         "--out", metavar="DIR", help="write stability.csv, eigenvalues.csv and the figure there"
     )
     parser.set_defaults(command=run)
@@ -52,6 +79,7 @@ def run(options: argparse.Namespace) -> int:
     from .config.problems import ConfigError
     from .config.reading import load_config
     from .flow.stability import NoFlow, stability
+    from .integration.contact_convergence import IntegrationError
 
     try:
         for name in ("stiffness", "damping"):
@@ -62,10 +90,13 @@ def run(options: argparse.Namespace) -> int:
         found = stability(config, options.stiffness, options.damping, options.inactive)
         if options.out:
             _write(found, Path(options.out))
-    except (ConfigError, NoFlow) as error:
+        sweep = _simulated(config, options.out) if options.simulate else []
+    except (ConfigError, IntegrationError, NoFlow) as error:
         print(error, file=sys.stderr)
         return 1
-    print(as_text(found, options.inactive))
+    for warning in found.warnings:
+        print(f"warning: {warning}", file=sys.stderr)
+    print("\n".join([as_text(found, options.inactive), *sweep]))
     return 0
 
 
@@ -77,9 +108,46 @@ def as_text(found: Stability, most: int) -> str:
             row = found.worst(velocity, inactive)
             if row is not None:
                 cells.append(_cells(row))
+    told = ["The mode nearest to instability:", *_aligned(cells), *_of_eigenvalues(found)]
+    return "\n".join(told)
+
+
+def _aligned(cells: list[tuple[str, ...]]) -> list[str]:
+    """Return the lines of a table."""
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-    lines = ["  ".join(map(str.ljust, row, widths)).rstrip() for row in cells]
-    return "\n".join(["The mode nearest to instability:", *lines, *_of_eigenvalues(found)])
+    return ["  ".join(map(str.ljust, row, widths)).rstrip() for row in cells]
+
+
+def _simulated(config: Config, folder: str | None) -> list[str]:
+    """Return the lines of the tube with gaps; write its tables and figures into a folder."""
+    from .figures.flow_sweep import flow_sweep_figures
+    from .io.records import write_table
+    from .study.flow_sweep import flow_sweep
+
+    found = flow_sweep(config)
+    if folder:
+        for name, rows in found.tables().items():
+            write_table(rows, Path(folder) / f"{name}.csv")
+        for sheet in flow_sweep_figures(found):
+            sheet.save(folder)
+    cells: list[tuple[str, ...]] = [SIMULATED]
+    for own in found.onsets:
+        speeds = (
+            own.open_m_per_s,
+            own.equivalent_m_per_s,
+            own.closed_m_per_s,
+            own.small_m_per_s,
+            own.large_m_per_s,
+        )
+        cells.append(
+            (
+                f"{own.load_rms_N:g} N",
+                f"{1e3 * own.gap_m:g} mm",
+                f"{own.k_N_per_m:.3g} N/m",
+                *(f"{speed:.3g}" if speed == speed else "-" for speed in speeds),
+            )
+        )
+    return ["", "With its gaps, in m/s:", *_aligned(cells)]
 
 
 def _of_eigenvalues(found: Stability) -> Iterator[str]:
@@ -115,6 +183,7 @@ def _span(low: float, high: float) -> str:
 
 def _write(found: Stability, folder: Path) -> None:
     """Write the tables and the figure."""
+    from .figures.drawing import save_plots
     from .figures.stability import stability_figure
     from .io.records import write_table
 
@@ -122,7 +191,7 @@ def _write(found: Stability, folder: Path) -> None:
     write_table([row.table_row() for row in found.rows], folder / "stability.csv")
     if found.eigenvalues is not None:
         write_table(list(_eigenvalue_rows(found.eigenvalues)), folder / "eigenvalues.csv")
-    stability_figure(found).save(folder)
+    save_plots([stability_figure(found)], folder)
 
 
 def _eigenvalue_rows(own: Eigenvalues) -> Iterator[dict[str, float]]:

@@ -25,6 +25,7 @@ SHORT = {
     "mass_between_stops": (901.5602805181978, 40.0),
     "u_bend_bars": (3.26, 2.0),
     "u_tube_drilled": (10.0, 2.0),
+    "u_tube_flow": (0.5, 10.0),
 }
 
 

@@ -59,6 +59,15 @@ def test_one_record_that_whirls_by_chance_refutes_nothing():
     assert beside_spectra(named, far, [near, far, far]).verdict == "unknown"
 
 
+def test_an_effect_beside_which_records_stay_off_is_a_part():
+    named = decided(hypothesis(8.0, "contact_damping@all"))
+    found = beside_spectra(named, misfit(11.8, 10.0), [misfit(11.8, 10.0), misfit(9.0, 1.2)], True)
+    assert found.verdict == "partly_explained" and found.best.ids == ("contact_damping",)
+    total = found.nothing + found.something_else + sum(chance for _, chance in found.ranked)
+    assert found.something_else > 0.9 and total == pytest.approx(1.0, abs=0.02)
+    assert beside_spectra(decided(), misfit(1.2, 1.2), surely_off=True).verdict == "none"
+
+
 def test_an_effect_that_spoils_spectra_without_excess_is_nothing():
     found = beside_spectra(decided(hypothesis(0.3, "dry_friction@all")), misfit(1.1, 20.0))
     assert found.verdict == "none" and found.nothing > 0.9 and not found.ranked

@@ -15,6 +15,7 @@ from vibroimpact.figures.diagnosis.place import place_figure
 from vibroimpact.figures.diagnosis.psd import chosen_channels as channels_of_psd
 from vibroimpact.figures.diagnosis.psd import chosen_records, psd_figure
 from vibroimpact.figures.diagnosis.sheets import diagnosis_figures
+from vibroimpact.figures.drawing import drawn
 from vibroimpact.figures.style import tidy_log_axes
 from vibroimpact.reports.discrepancy_page import discrepancy_page
 from vibroimpact.verdict.content import CONCLUSIONS, FoundEffect
@@ -148,7 +149,7 @@ def verdict_of(kind="named"):
 @pytest.fixture(scope="module")
 def figures():
     """{name: Sheet} of a named effect."""
-    sheets = diagnosis_figures(made_up_evidence(), made_up_psd(), verdict_of())
+    sheets = [*map(drawn, diagnosis_figures(made_up_evidence(), made_up_psd(), verdict_of()))]
     return {sheet.name: sheet for sheet in sheets}
 
 
@@ -164,7 +165,9 @@ def test_axes_say_what_they_are_and_in_which_unit(figures):
 def test_no_text_is_cut_or_covered(size):
     channels, records, supports = size
     evidence = made_up_evidence(channels, records, supports)
-    sheets = diagnosis_figures(evidence, made_up_psd(channels, records), verdict_of())
+    sheets = [
+        *map(drawn, diagnosis_figures(evidence, made_up_psd(channels, records), verdict_of()))
+    ]
     for sheet in sheets:
         tidy_log_axes(sheet.figure)
     faults = {
@@ -228,18 +231,20 @@ def test_what_is_not_seen_is_told(figures):
         (made_up_evidence(known=0.2), "not seen by these sensors"),
         (made_up_evidence(supports=0), "The law at the supports"),
     ):
-        sheets = diagnosis_figures(evidence, made_up_psd(), verdict_of())
+        sheets = [*map(drawn, diagnosis_figures(evidence, made_up_psd(), verdict_of()))]
         law = next(sheet for sheet in sheets if sheet.name == "diagnosis_law")
         assert words in law.figure.get_suptitle()
     alone = made_up_evidence().drop_vars(["free_error", "waveform"])
-    sheets = diagnosis_figures(alone, made_up_psd(), verdict_of())
+    sheets = [*map(drawn, diagnosis_figures(alone, made_up_psd(), verdict_of()))]
     assert next(each for each in sheets if each.name == "diagnosis_free_sensor").tables == []
 
 
 def test_evidence_says_itself_what_it_can_not_give():
     told = made_up_evidence().drop_vars(["holding_force", "demanded_force", "free_error"])
     why = "the response is no motion"
-    sheets = diagnosis_figures(told.assign_attrs(left_out=why), made_up_psd(), verdict_of())
+    sheets = [
+        *map(drawn, diagnosis_figures(told.assign_attrs(left_out=why), made_up_psd(), verdict_of()))
+    ]
     silent = {sheet.name: sheet.caption for sheet in sheets if not sheet.tables}
     assert list(silent) == ["diagnosis_holding", "diagnosis_law", "diagnosis_free_sensor"]
     assert all(why in caption for caption in silent.values())
@@ -247,7 +252,7 @@ def test_evidence_says_itself_what_it_can_not_give():
 
 def test_the_completed_model_is_left_out_where_nothing_was_added():
     evidence = made_up_evidence(after="nothing")
-    for sheet in diagnosis_figures(evidence, made_up_psd(), verdict_of("none")):
+    for sheet in map(drawn, diagnosis_figures(evidence, made_up_psd(), verdict_of("none"))):
         assert "completed model" not in {curve for _, curve, _ in sheet.tables}
         assert "→" not in sheet.figure.get_suptitle()
 
@@ -268,7 +273,7 @@ def test_telling_levels_and_channels_are_chosen():
 def test_a_failed_free_run_does_not_stop_the_figure():
     psd = made_up_psd()
     psd["psd"].values[1:] = np.nan
-    sheet = psd_figure(psd, verdict_of())
+    sheet = drawn(psd_figure(psd, verdict_of()))
     tidy_log_axes(sheet.figure)
     assert layout_faults(sheet.figure) == []
 
@@ -280,7 +285,7 @@ def test_every_verdict_has_its_figures_and_page(kind, tmp_path):
     evidence = xr.Dataset() if refused else made_up_evidence(2, 2, 1, after=after)
     psd = xr.Dataset() if refused else made_up_psd(1, 2)
     verdict = verdict_of(kind)
-    sheets = diagnosis_figures(evidence, psd, verdict)
+    sheets = [*map(drawn, diagnosis_figures(evidence, psd, verdict))]
     assert tuple(sheet.name for sheet in sheets) == FIGURES
     assert refused == all(not sheet.tables for sheet in sheets)
     shown = [sheet for sheet in sheets if sheet.tables and sheet.name == "diagnosis_ranking"]

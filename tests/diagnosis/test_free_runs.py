@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from vibroimpact.diagnosis.explanations import Point, Term
-from vibroimpact.diagnosis.free_runs import distance, free_runs, regions
+from vibroimpact.diagnosis.free_runs import distance, free_runs, regions, surely_off
 
 
 @pytest.fixture(scope="module")
@@ -24,6 +24,23 @@ def test_a_channel_ten_times_louder_is_ten_decibels_off(compared):
     rows = regions(runs, signals, 5)
     assert {row["channel"] for row in rows} == {signals.names[1]}
     assert np.median([row["discrepancy_dB"] for row in rows]) == pytest.approx(10.0, abs=3.0)
+
+
+def test_a_record_is_off_where_no_run_is_as_far_from_the_others(compared, comparison):
+    signals, runs = compared
+    given = comparison.structure, signals, Point(), [0]
+    assert surely_off(runs, *given) == [0]
+    alike = replace(runs, measured=runs.before[:, 0])
+    assert surely_off(alike, *given) == []
+
+
+def test_a_record_is_not_off_where_one_run_whirls_as_it_does(compared, comparison):
+    """What one of four runs does is chance."""
+    signals, runs = compared
+    whirling = runs.after.copy()
+    whirling[:, 3] *= 10.0
+    chance = replace(runs, measured=whirling[:, 3].copy(), after=whirling)
+    assert surely_off(chance, comparison.structure, signals, Point(), [0, 1, 2]) == []
 
 
 def test_nothing_added_closes_nothing(compared):

@@ -26,6 +26,7 @@ from vibroimpact.diagnosis.identified.levels import long_record_lines
 from vibroimpact.diagnosis.identified.records import unsettled_periods
 from vibroimpact.diagnosis.identified.trial import Trial
 from vibroimpact.figures.diagnosis.sheets import diagnosis_figures
+from vibroimpact.figures.drawing import drawn
 from vibroimpact.io.records import read_record, read_table
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.verdict.content import read_verdict
@@ -253,5 +254,6 @@ def test_the_records_demand_the_law_of_the_stop(results):
 
 def test_the_figures_of_any_diagnosis_are_drawn(results):
     content = [read_record(results / f"{name}.nc") for name in ("evidence", "spectra")]
-    sheets = diagnosis_figures(*content, read_verdict(results / "verdict.json"))
+    plots = diagnosis_figures(*content, read_verdict(results / "verdict.json"))
+    sheets = [*map(drawn, plots)]
     assert [sheet.name for sheet in sheets if not sheet.tables] == []

@@ -30,6 +30,12 @@ def test_every_room_exists():
     ] == []
 
 
+def test_packages_of_the_site_exist():
+    source = (ROOT / "docs" / "site_pages.py").read_text(encoding="utf-8")
+    public = re.findall(r'"(\w+)"', re.search(r"^PUBLIC = \((.*?)^\)", source, re.M | re.S)[1])
+    assert public and [name for name in public if not (LIBRARY / name).exists()] == []
+
+
 def test_there_are_at_most_40_decisions_of_four_parts():
     text = (ROOT / "docs" / "decisions.md").read_text(encoding="utf-8")
     entries = re.split(r"^### ", text, flags=re.M)[1:]

@@ -76,7 +76,8 @@ def row_of(kind, verdict, *effects, **more):
 
 
 FRICTION = ("dry_friction", {"mu": 0.2})
-GAP = ("gap", {"factor": 1.2})
+GAP = ("gap", {"factor": 1.2, "plates": "plate_2"})
+ALL_GAPS = ("gap", {"factor": 2.0, "plates": "all"})
 
 
 def pairs():
@@ -214,7 +215,7 @@ def test_a_stated_family_counts_where_no_law_is_named():
     ],
 )
 def test_aliases_are_told_together_unless_evidence_parts_them(kind, sets, right):
-    hidden_one = GAP if kind == "exact_alias" else ("hertz", {"coefficient": 1e6})
+    hidden_one = ALL_GAPS if kind == "exact_alias" else ("hertz", {"coefficient": 1e6})
     said = "named" if len(sets) == 1 else "ambiguous"
     assert row_of(kind, verdict_of(said, sets), hidden_one)["both"] is right
 
@@ -482,10 +483,16 @@ def test_a_stray_gain_may_be_named_and_an_exact_alias_counts():
     truth = truth_of("strong", GAP) | {"gains": [1.01, 0.85]}
     gap, gain = ["gap"], ["sensor_gain"]
     assert right_names(truth) == [gap, sorted([*gap, *gain])]
-    whole = truth_of("exact_alias", ("gap", {"factor": 2.0, "plates": "all"}))
-    assert right_names(whole) == [gap, gain]
+    assert right_names(truth_of("exact_alias", ALL_GAPS)) == [gap, gain]
     assert right_names(truth_of("nothing") | {"gains": [0.98, 1.2]}) == [gain]
     assert right_names(truth_of("fault", ("swap", {}))) == []
+
+
+def test_the_gap_of_one_support_is_no_alias_of_a_gain():
+    """A gain common to force and responses scales the gaps of all supports."""
+    assert kind_of(truth_of("exact_alias", ALL_GAPS)) == "exact_alias"
+    assert kind_of(truth_of("exact_alias", GAP)) == "strong"
+    assert row_of("exact_alias", verdict_of("named", [["gap"]]), GAP)["first"]
 
 
 def test_a_pair_of_which_one_hides_the_other_is_masked():

@@ -13,6 +13,7 @@ from vibroimpact.config.reading import check_config
 from vibroimpact.config.stage_keys import stage_params
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.contact.outline import radial_gap
+from vibroimpact.figures import drawing
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.figures.study import contact, support_views, tube
 from vibroimpact.structure.tube import build_structure
@@ -38,12 +39,12 @@ def drawn(values):
     """The Sheets {name: Sheet} of the layout, the modes and the contact law."""
     config = settings(values)
     structure = build_structure(config)
-    sheets = [
+    plots = [
         *tube.figure_01_layout(config, structure),
         *tube.figure_02_free_modes(config, structure),
         *contact.figure_03_contact_law(config, structure),
     ]
-    return {sheet.name: sheet for sheet in sheets}
+    return {plot.name: drawing.drawn(plot) for plot in plots}
 
 
 def curve(sheet, panel, name, *columns):

@@ -15,6 +15,8 @@ from vibroimpact.campaign.file import read_campaign, write_campaign
 from vibroimpact.config.reading import load_config
 from vibroimpact.config.stage_keys import stage_params
 from vibroimpact.config.stage_settings import StageSettings
+from vibroimpact.figures.drawing import drawn, save_plots
+from vibroimpact.figures.plot import Axis, Panel, Plot
 from vibroimpact.figures.sheet import Sheet, edges, rounded
 from vibroimpact.figures.study import (
     basis,
@@ -27,6 +29,7 @@ from vibroimpact.figures.study import (
     psd_table,
     response,
     shapes,
+    stabilisation,
     tube,
 )
 from vibroimpact.figures.study import (
@@ -115,42 +118,44 @@ def sheets(config, study, tmp_path_factory):
         folder / "campaign.nc",
     )
     part, structure = parts["figures_model"], build_structure(parts["figures_model"])
-    drawn = tube.figure_01_layout(part, structure) + tube.figure_02_free_modes(part, structure)
-    drawn += (
+    plots = tube.figure_01_layout(part, structure) + tube.figure_02_free_modes(part, structure)
+    plots += (
         contact.figure_03_contact_law(part, structure)
         + contact.figure_04_first_frequency(part)
         + basis.basis_quality(part, basis_frequency_errors(config))
     )
     part = parts["figures_response"]
     responses = psd_table.gather(part, model, found["spectra"].values())
-    drawn += overlay.figure_05_overlay(
+    plots += overlay.figure_05_overlay(
         part, model, responses, read_campaign(folder / "campaign.nc")
     )
-    drawn += response.figure_06_levels(
+    plots += response.figure_06_levels(
         part, model, responses
     ) + response.figure_07_overlay_of_loads(part, model, responses)
-    drawn += response.figure_08_load_and_stiffness(
+    plots += response.figure_08_load_and_stiffness(
         part, model, responses
     ) + response.in_plane_share(part, responses)
     part = parts["figures_identification"]
-    drawn += poles.figure_09_poles(part, model, of_gap["curves"], of_gap["spectra"], gap_rows)
-    drawn += poles.figure_09_stabilisation(part, of_gap["curves"], of_gap["spectra"], gap_rows)
-    drawn += shapes.figure_10_shapes(
+    plots += poles.figure_09_poles(part, model, of_gap["curves"], of_gap["spectra"], gap_rows)
+    plots += stabilisation.figure_09_stabilisation(
+        part, of_gap["curves"], of_gap["spectra"], gap_rows
+    )
+    plots += shapes.figure_10_shapes(
         part, model, of_gap["curves"], gap_rows
     ) + shapes.figure_11_singular_values(part, of_gap["curves"])
-    drawn += broadband.figure_12_broadband(
+    plots += broadband.figure_12_broadband(
         part, model, of_gap["curves"], of_gap["spectra"], gap_rows
     )
     part = parts["figures_checks"]
-    drawn += equivalent.figure_13_equivalent_support(part, model, rows) + equivalent.collapse(
+    plots += equivalent.figure_13_equivalent_support(part, model, rows) + equivalent.collapse(
         part, model, rows
     )
-    drawn += checks.energy_balance(part, found["records"]) + checks.contact_statistics(
+    plots += checks.energy_balance(part, found["records"]) + checks.contact_statistics(
         part, model, found["records"]
     )
-    for sheet in drawn:
-        sheet.save(folder)
-    return {sheet.name: sheet for sheet in drawn}, folder
+    found = [*map(drawn, plots)]
+    save_plots(found, folder)
+    return {sheet.name: sheet for sheet in found}, folder
 
 
 def declared():
@@ -355,12 +360,12 @@ def test_the_in_plane_share_is_a_ratio_of_mean_squares():
 
 
 def test_bars_span_the_resolved_seeds():
-    sheet = Sheet("bars", "bars", "bars.")
     rows = [{"load_rms_N": 1.0, "k_N_per_m": k} for k in (3.0, 1.0, 2.0, np.nan)] + [
         {"load_rms_N": 2.0, "k_N_per_m": np.nan}
     ]
-    scatter.over_seeds(sheet, sheet.axes["main"], rows, "load_rms_N", "k_N_per_m", "lscf")
-    (row,) = sheet.rows()
+    items = scatter.over_seeds(rows, "load_rms_N", "k_N_per_m", "lscf")
+    panel = Panel(Axis("load_rms_N"), Axis("k_N_per_m"), items)
+    (row,) = drawn(Plot("bars", "bars", "bars.", {"main": panel})).rows()
     assert (
         row["load_rms_N"],
         row["k_N_per_m"],
@@ -368,10 +373,7 @@ def test_bars_span_the_resolved_seeds():
         row["k_N_per_m_high"],
         row["values"],
     ) == (1.0, 2.0, 1.0, 3.0, 3)
-    assert (
-        scatter.over_seeds(sheet, sheet.axes["main"], rows[-1:], "load_rms_N", "k_N_per_m", "ods")
-        is None
-    )
+    assert scatter.over_seeds(rows[-1:], "load_rms_N", "k_N_per_m", "ods") == []
 
 
 def test_shown_loads_are_spread_along_the_peak_shift():
@@ -437,18 +439,18 @@ def test_unresolved_study_still_has_its_figures(config, study, tmp_path):
         case: dataset.assign(peak_curve=dataset["peak_curve"] * np.nan)
         for case, dataset in bare.items()
     }
-    drawn = equivalent.figure_13_equivalent_support(
+    plots = equivalent.figure_13_equivalent_support(
         config, model, unresolved
     ) + equivalent.collapse(config, model, unresolved)
-    drawn += poles.figure_09_poles(config, model, empty, found["spectra"], unresolved)
-    drawn += poles.figure_09_stabilisation(config, empty, found["spectra"], unresolved)
-    drawn += shapes.figure_10_shapes(
+    plots += poles.figure_09_poles(config, model, empty, found["spectra"], unresolved)
+    plots += stabilisation.figure_09_stabilisation(config, empty, found["spectra"], unresolved)
+    plots += shapes.figure_10_shapes(
         config, model, empty, unresolved
     ) + shapes.figure_11_singular_values(config, empty)
-    drawn += broadband.figure_12_broadband(config, model, empty, found["spectra"], unresolved)
-    for sheet in drawn:
-        sheet.save(tmp_path)
-        assert (tmp_path / f"{sheet.name}.png").is_file()
+    plots += broadband.figure_12_broadband(config, model, empty, found["spectra"], unresolved)
+    for plot in plots:
+        save_plots([plot], tmp_path)
+        assert (tmp_path / f"{plot.name}.png").is_file()
 
 
 def test_titles_say_what_the_data_are(sheets):

@@ -2,8 +2,11 @@
 
 import numpy as np
 import pytest
+from scipy.linalg import solve_continuous_lyapunov
 
-from vibroimpact.flow.coupled import FluidForce, Zone, critical_velocity, oscillations, system
+from vibroimpact.config.flow import ConnorsForce, NegativeDamping
+from vibroimpact.excitation.fluid_elastic import FluidForce, fluid_force
+from vibroimpact.flow.coupled import Zone, critical_velocity, oscillations, system
 from vibroimpact.flow.critical_velocity import (
     Along,
     log_decrement,
@@ -78,3 +81,24 @@ def test_without_velocity_nothing_changes():
     frequency, ratio = oscillations(system(STIFFNESS, DAMPING, QUASI_STEADY, WHOLE, 0.0), 1)
     assert frequency[0] == pytest.approx(30.0, rel=1e-9) and ratio[0] == pytest.approx(0.01)
     assert np.isnan(critical_velocity(STIFFNESS, DAMPING, QUASI_STEADY, WHOLE, 0.5))
+
+
+@pytest.mark.parametrize("frozen", [False, True])
+def test_connors_force_has_the_velocity_of_connors(frozen):
+    """K = 3: V_c = 0.552596 m/s. At 0.8 V_c white turbulence moves the tube 1.6667 times as far."""
+    coupling = (
+        NegativeDamping(kind="negative_damping", constant=3.0, frequency_Hz=30.0)
+        if frozen
+        else ConnorsForce(kind="connors", constant=3.0, band_Hz=(6.0, 150.0))
+    )
+    force = fluid_force(coupling, DIAMETER)
+    found = critical_velocity(STIFFNESS, DAMPING, force, WHOLE, 2.0)
+    assert found == pytest.approx(0.552596, rel=1e-3)
+    rms = []
+    for velocity in (0.0, 0.8 * 0.552596):
+        matrix = system(STIFFNESS, DAMPING, force, WHOLE, velocity)
+        pushed = np.zeros((len(matrix),) * 2)
+        pushed[1, 1] = 1.0
+        rms.append(np.sqrt(solve_continuous_lyapunov(matrix, -pushed)[0, 0]))
+    # the lags' stiffness rises with the frequency as 0.4 % more mass would
+    assert rms[1] / rms[0] == pytest.approx(5.0 / 3.0, rel=1e-4 if frozen else 3e-3)

@@ -26,6 +26,7 @@ from vibroimpact.config.stage_keys import answer_digest
 from vibroimpact.equivalent_support.answer import EquivalentError
 from vibroimpact.equivalent_support.study_answer import equivalent
 from vibroimpact.figures.discrepancy.quicklook import quicklook
+from vibroimpact.figures.drawing import drawn
 from vibroimpact.figures.study.measured import study_beside
 from vibroimpact.io.records import read_table, write_record, write_table
 from vibroimpact.measured_support.levels import cases_of_records, gaps_of_records
@@ -147,10 +148,13 @@ def test_figure_5_has_the_equivalent_linear_tube(results):
 
 def test_a_study_of_another_configuration_is_not_drawn_behind(results, config, tmp_path):
     rows = read_table(results.parent / "mine" / "consistency.csv")
-    for digest, drawn in ((answer_digest(config.model_dump(mode="json")), True), ("0123", False)):
+    for digest, is_drawn in (
+        (answer_digest(config.model_dump(mode="json")), True),
+        ("0123", False),
+    ):
         own = [row | {"config_digest": digest} for row in rows]
         write_table(own, tmp_path / "consistency.csv")
-        assert (study_beside(config, tmp_path) is not None) == drawn
+        assert (study_beside(config, tmp_path) is not None) == is_drawn
 
 
 @needs_chromium
@@ -169,7 +173,7 @@ def test_the_page_draws_the_stabilisation_chart(results, tmp_path, width):
         width,
     )
     assert troubles == [] and not found["too_wide"]
-    assert found["poles"] > 1 and found["kinds"][-1] == "taken"
+    assert found["poles"] > 1 and found["kinds"][-1].startswith("taken")
 
 
 def test_the_page_says_that_no_contact_was_simulated(results):
@@ -243,7 +247,7 @@ def test_its_report_says_that_no_force_was_measured(plant):
     assert [row["check"] for row in checks] == ["content"]
     text = import_text(plant, imported, rows, checks)
     assert "no force, gap 0.2889 mm" in text and "The campaign holds no force" in text
-    (sheet,) = quicklook(imported)
+    sheet = drawn(*quicklook(imported))
     assert {curve for _, curve, _ in sheet.tables} == {"calm", "rough"}
 
 

@@ -202,6 +202,29 @@ SPECTRA = {
         "velocity_m_per_s": 2.0, "fluid_density_kg_per_m3": 700.0,
     },
 }  # fmt: skip
+ACTING = {
+    "velocity_m_per_s": [1.0],
+    "acting_m_per_s": 1.5,
+    "density_kg_per_m3": 700.0,
+    "direction": OBLIQUE,
+    "stretches": [
+        {"from_m": [0.1, 0.0, 0.0], "to_m": [0.35, 0.0, 0.0], "velocity_factor": 0.5},
+        {"from_m": [0.35, 0.0, 0.0], "to_m": [0.6, 0.0, 0.0], "density_kg_per_m3": 300.0},
+    ],
+    "criterion": {"kind": "connors", "constant": [3.0]},
+}
+COUPLINGS = {
+    "lags": {
+        "stiffness": 20.0,
+        "damping": 0.3,
+        "amplitudes": [-20.0],
+        "rates": [1.1],
+        "reduced_velocity": [2.0, 50.0],
+    },
+    "quasi_steady": {"lift_slope": -20.0, "drag": 0.3, "delay": 0.8},
+    "connors": {"constant": 3.0, "band_Hz": [5.0, 200.0]},
+    "negative_damping": {"constant": 3.0, "frequency_Hz": 30.0},
+}
 PROFILES = {
     "planes": {"normals_deg": [10.0, 170.0]},
     "lobes": {"count": 3, "depth_m": 1e-3, "angle_deg": 20.0},
@@ -314,6 +337,11 @@ def _configurations():
     for kind, spectrum in SPECTRA.items():
         force = {"kind": "turbulence", **FLOW, "spectrum": {"kind": kind, **spectrum}}
         yield kind, changed(BASE, excitation=force, **NO_FIT)
+    for kind, coupling in COUPLINGS.items():
+        flow = ACTING | {"coupling": {"kind": kind, **coupling}}
+        if kind != "lags":
+            del flow["stretches"]
+        yield f"flow {kind}", changed(BASE, flow=flow)
     base = {"kind": "base_motion", "direction": OBLIQUE, "obstacles": "fixed"}
     moved = {"base_displacement_m": 1e-4, "base_velocity_m_per_s": 1e-3}
     for signal in (

@@ -2,11 +2,12 @@
 is requested and nothing goes wrong.
 """
 
+import re
 from pathlib import Path
 
 import pytest
 
-from tests.support.chromium import needs_chromium, opened
+from tests.support.chromium import needs_chromium, opened, printed
 from tests.support.made_up_study import LOADS, MadeUpStudy, equivalent_rows
 from vibroimpact.config.reading import load_config
 from vibroimpact.reduction.reduced_model import build_model
@@ -121,3 +122,12 @@ def test_page_fits_a_narrow_window(model, tmp_path):
     widths, troubles = opened(outer, "return window.told;", tmp_path)
     assert troubles == [] and 380 <= widths["window"] <= 400
     assert widths["needed"] <= widths["window"] and widths["plots"] <= widths["window"]
+
+
+def test_page_is_printed_on_a4(model, tmp_path):
+    pdf = printed(MadeUpStudy(model).page(), tmp_path)
+    boxes = re.findall(rb"/MediaBox \[([\d. ]+)\]", pdf)
+    assert len(boxes) > 2
+    for box in boxes:
+        left, bottom, right, top = map(float, box.split())
+        assert (right - left, top - bottom) == pytest.approx((595.3, 841.9), abs=1.0)

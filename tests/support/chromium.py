@@ -82,3 +82,27 @@ def opened(page, script, folder, width=1280):
     assert result, f"the script did not finish: {run.stderr[-2000:]}"
     values = json.loads(html.unescape(result.group(1)))
     return values["found"], values["troubles"]
+
+
+def printed(page, folder):
+    """Return the bytes of the PDF that Chromium prints of a page.
+
+    page: HTML text.
+    folder: for the copy, the PDF and Chromium's own files.
+    """
+    (folder / "page.html").write_text(page, encoding="utf-8")
+    subprocess.run(
+        [
+            str(FOUND),
+            *OPTIONS,
+            f"--user-data-dir={folder / 'profile'}",
+            "--virtual-time-budget=20000",
+            "--no-pdf-header-footer",
+            f"--print-to-pdf={folder / 'page.pdf'}",
+            (folder / "page.html").as_uri(),
+        ],
+        check=True,
+        capture_output=True,
+        timeout=120,
+    )
+    return (folder / "page.pdf").read_bytes()

@@ -87,7 +87,7 @@ def test_inputs_of_a_study_grow_with_its_cases_alone(jobs, reliability):
         assert sum(inputs for inputs, _ in rules.values()) - 10 * loads < 230
         for inputs, outputs in of_kind(rules, "identify"):
             assert inputs == 1 + outputs  # the model; a record and a spectrum per pair of estimates
-    reliability.scale("inputs of all jobs of a study", "10 per case and less than 230 beside")
+    reliability.scale("inputs of all jobs of a study", "10 per case, and less than 230 more")
 
 
 def test_ten_times_the_loads_add_few_jobs(jobs, reliability):

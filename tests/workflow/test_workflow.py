@@ -191,7 +191,6 @@ def test_complete_study_has_tables_figures_and_no_jobs_left(study):
         "consistency_summary.csv",
         "consistency.nc",
         "index.html",
-        "summary.pdf",
         "basis_quality.csv",
         "figures/figure_01_layout.png",
     ):

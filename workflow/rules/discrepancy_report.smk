@@ -12,7 +12,7 @@ DIAGNOSIS_FIGURES = (
 
 rule _discrepancy_report:
     input:
-        template=f"{SOURCE}/vibroimpact/reports/discrepancy_page.html",
+        template=page_files("discrepancy_page"),
         verdict=f"{DISCREPANCY}/verdict.json",
         evidence=f"{DISCREPANCY}/evidence.nc",
         spectra=f"{DISCREPANCY}/spectra.nc",

@@ -12,7 +12,7 @@ rule equivalent:
             if WITHOUT_MODEL
             else after_model_checks(MODEL, MODEL_FILES, measured_campaign)
         ),
-        template=f"{SOURCE}/vibroimpact/reports/study_page.html",
+        page=page_files("study_page"),
         captions=[caption_file(f"measured_{name}") for name in MEASURED_FIGURES],
     output:
         tables=[f"results/{MEASURED}/{name}.csv" for name in TABLES[:3]],

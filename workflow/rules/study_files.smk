@@ -137,6 +137,13 @@ def caption_file(name):
     return f"{CAPTIONS}/{name}.rst"
 
 
+def page_files(name):
+    """The files of a page beside those that its script imports: templates, style and script."""
+    folder = Path(SOURCE, "vibroimpact", "reports")
+    shared = [folder / each for each in ("page.html", "page.css", "blocks.html")]
+    return [str(file) for file in (*shared, folder / f"{name}.html", *folder.glob(f"{name}.js"))]
+
+
 def reported(path, name=None):
     """An output that `snakemake --report` shows, with the caption of its name."""
     caption = read_caption(caption_file(name or Path(path).stem))
@@ -198,12 +205,12 @@ def targets():
     Without an identification: page, statistics of every case, and time series where they are kept.
     """
     series = [*(files_of_study("timeseries") if KEPT else []), *missing_files()]
-    pages = [f"{RESULTS}/index.html", f"{RESULTS}/summary.pdf"]
+    page = f"{RESULTS}/index.html"
     if STUDY.identification is None:
-        return [f"{RESULTS}/statistics.csv", *pages, *series]
+        return [f"{RESULTS}/statistics.csv", page, *series]
     figures = [file for group in FIGURES for file in figure_files(group)]
     tables = [*(f"{RESULTS}/{name}.csv" for name in TABLES), f"{RESULTS}/consistency.nc"]
-    return [*tables, *pages, *figures, *series]
+    return [*tables, page, *figures, *series]
 
 
 wildcard_constraints:

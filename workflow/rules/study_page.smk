@@ -1,9 +1,9 @@
-# The page of a study and its summary on two pages, from its tables, records, spectra and figures.
+# The page of a study, from its tables, records, spectra and figures.
 
 
 rule _study_page:
     input:
-        page=[str(file) for file in sorted(Path(SOURCE).glob("vibroimpact/reports/*study_page.*"))],
+        page=page_files("study_page"),
         model=f"{RESULTS}/model.nc",
         accuracy=f"{RESULTS}/model_accuracy.csv",
         records=files_of_study("records"),
@@ -19,7 +19,7 @@ rule _study_page:
         captions=[caption_file(name) for name in figures_of_study()],
     output:
         page=f"{RESULTS}/index.html",
-        summary=reported(f"{RESULTS}/summary.pdf"),
+        wear=[f"{RESULTS}/wear.csv"] if STUDY.wear is not None else [],
     log:
         f"{RESULTS}/logs/study_page.log",
     benchmark:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from vibroimpact.config.reading import check_config
 from vibroimpact.config.stage_keys import answer_digest
+from vibroimpact.figures.drawing import save_plots
 from vibroimpact.figures.interactive.measured_plots import measured_plots
 from vibroimpact.figures.interactive.pictures import pictures
 from vibroimpact.figures.study.measured import measured_figures, study_beside
@@ -25,16 +26,15 @@ config = check_config(values, "the model")
 found = equivalent_of(str(snakemake.input.campaign), config)
 attributes = file_attributes(values, snakemake.params.library)
 write_measured(found, folder, attributes, answer_digest(values))
-sheets = measured_figures(found, study_beside(config, snakemake.params.study))
-for sheet in sheets:
-    sheet.save(folder / "figures")
+plots = measured_figures(found, study_beside(config, snakemake.params.study))
+files = save_plots(plots, folder / "figures")
 content = measured_content(found, snakemake.params.name, values, flag_sentences(found.equivalent))
 captions = {
     name: replace(read_caption(path), name=name)
     for path in snakemake.input.captions
     for name in [Path(path).stem.removeprefix("measured_")]
 }
-drawn = pictures([folder / "figures" / f"{sheet.name}.png" for sheet in sheets], captions)
+drawn = pictures(files, captions)
 write_text(study_page(content, measured_plots(content, found), drawn), snakemake.output.page)
 print(*content.headline(), sep="\n")
 print(Stopwatch().line())

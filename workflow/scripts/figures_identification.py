@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.figures.study import broadband, poles, shapes
+from vibroimpact.figures.drawing import save_plots
+from vibroimpact.figures.study import broadband, poles, shapes, stabilisation
 from vibroimpact.figures.study.cases_of_gap import cases_of_gap, shown_gap
 from vibroimpact.io.job_log import redirect_output
 from vibroimpact.io.records import read_table
@@ -16,13 +17,12 @@ config, model = StageSettings(snakemake.params.config), read_model(snakemake.inp
 rows = [row for row in read_table(snakemake.input.table) if row["gap_m"] == shown_gap(config)]
 curves = cases_of_gap(snakemake.input.curves, config, read_case)
 spectra = cases_of_gap(snakemake.input.spectra, config, read_case)
-sheets = [
+plots = [
     *poles.figure_09_poles(config, model, curves, spectra, rows),
-    *poles.figure_09_stabilisation(config, curves, spectra, rows),
+    *stabilisation.figure_09_stabilisation(config, curves, spectra, rows),
     *shapes.figure_10_shapes(config, model, curves, rows),
     *shapes.figure_11_singular_values(config, curves),
     *broadband.figure_12_broadband(config, model, curves, spectra, rows),
 ]
-for sheet in sheets:
-    sheet.save(Path(snakemake.output.figures[0]).parent)
+save_plots(plots, Path(snakemake.output.figures[0]).parent)
 print(Stopwatch().line())

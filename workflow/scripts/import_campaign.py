@@ -7,6 +7,7 @@ from vibroimpact.campaign.file import write_campaign
 from vibroimpact.campaign.importing.assemble import import_folder
 from vibroimpact.campaign.importing.report import write_report
 from vibroimpact.figures.discrepancy.quicklook import quicklook
+from vibroimpact.figures.drawing import save_plots
 from vibroimpact.io.job_log import redirect_output
 from vibroimpact.io.signal_files.signals import ImportProblem
 
@@ -17,4 +18,4 @@ except ImportProblem as problem:
     sys.exit(str(problem))
 write_campaign(campaign, snakemake.output.campaign)
 write_report(snakemake.params.folder, campaign, rows, snakemake.output)
-quicklook(campaign)[0].save(Path(snakemake.output.figure[0]).parent)
+save_plots(quicklook(campaign), Path(snakemake.output.figure[0]).parent)

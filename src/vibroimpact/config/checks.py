@@ -350,6 +350,8 @@ POINT_CHECKS: tuple[Callable[..., Problems], ...] = (
 CHECKS: tuple[Callable[..., Problems], ...] = (
     *TUBE_CHECKS,
     *POINT_CHECKS,
+    section_checks.wall_that_wears,
+    section_checks.wear_needs_statistics,
     names.chain_names,
     geometry_checks.support_lists,
     geometry_checks.offsets,
@@ -374,6 +376,8 @@ CHECKS: tuple[Callable[..., Problems], ...] = (
     names.driven_direction_is_recorded,
     turbulence_checks.band,
     flow_checks.lags,
+    flow_checks.acting,
+    flow_checks.fitted_range,
     _force,
     _overlay,
     _bands_pass_the_filter,

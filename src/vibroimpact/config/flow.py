@@ -7,8 +7,10 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from .quantities import (
+    Band_Hz,
     By_kind,
     Direction,
+    Frequency_Hz,
     Length_m,
     Not_empty,
     Number,
@@ -71,7 +73,7 @@ class Lags(Section):
     F = -density V²/2 (a0 u + a1 (D/V) u' + sum b_j z_j),  z_j' = -gamma_j (V/D) z_j + u'.
 
     The quasi-steady force with a lag has a0 = -dC_L/d(y/D), a1 = C_D, b = [dC_L/d(y/D)] and
-    gamma = [1/mu], with the delay mu D/V.
+    gamma = [1/mu], with the delay mu D/V: kind quasi_steady.
     """
 
     kind: Literal["lags"] = Field(description="This kind of coupling.", examples=["lags"])
@@ -84,9 +86,67 @@ class Lags(Section):
         (), description="gamma, one for each lag.", examples=[[1.0]]
     )
 
+    reduced_velocity: (
+        tuple[Annotated[Positive_number, Unit("1")], Annotated[Positive_number, Unit("1")]] | None
+    ) = Field(
+        None,
+        description="Reduced velocities V/(f D) that the coefficients were fitted between, for a"
+        " warning outside; null for no limit.",
+        examples=[[2.0, 50.0]],
+    )
+
+
+class QuasiSteady(Section):
+    """The quasi-steady force of one tube in a rigid bundle, its lift late by a first-order lag:
+    kind lags with stiffness -lift_slope, damping drag, amplitudes [lift_slope], rates [1/delay].
+    """
+
+    kind: Literal["quasi_steady"] = Field(
+        description="This kind of coupling.", examples=["quasi_steady"]
+    )
+    lift_slope: Annotated[Coefficient, Unit("1")] = Field(
+        description="Slope of the lift coefficient over y/D.", examples=[-20.0]
+    )
+    drag: Annotated[Coefficient, Unit("1")] = Field(description="Drag coefficient.", examples=[0.3])
+    delay: Annotated[Positive_number, Unit("1")] = Field(
+        1.0, description="Delay of the lift over D/V, mu.", examples=[1.0]
+    )
+
+
+class ConnorsForce(Section):
+    """The damping of Connors' law at every frequency of a band, C_d = -4 V/(f D K²): lags whose
+    critical velocities are Connors'. Its stiffness is 0 in the middle of the band and drifts.
+    """
+
+    kind: Literal["connors"] = Field(description="This kind of coupling.", examples=["connors"])
+    constant: Annotated[Constant, Unit("1")] = Field(description="Connors' K.", examples=[3.0])
+    band_Hz: Band_Hz = Field(
+        description="Band of the modes that matter. Wider than a decade the stiffness drifts more.",
+        examples=[[5.0, 200.0]],
+    )
+
+
+class NegativeDamping(Section):
+    """The damping of Connors' law frozen at one frequency: a negative damper along the tube. It has
+    Connors' critical velocity for a mode of that frequency, and no memory.
+    """
+
+    kind: Literal["negative_damping"] = Field(
+        description="This kind of coupling.", examples=["negative_damping"]
+    )
+    constant: Annotated[Constant, Unit("1")] = Field(description="Connors' K.", examples=[3.0])
+    frequency_Hz: Frequency_Hz = Field(
+        description="Frequency of the mode that it is frozen at.", examples=[30.0]
+    )
+
+
+Coupling = Annotated[Lags | QuasiSteady | ConnorsForce | NegativeDamping, By_kind]
+
 
 class Flow(Section):
-    """A flow across the tube, for `vibroimpact stability`. It changes no simulation."""
+    """A flow across the tube, for `vibroimpact stability` and, with acting_m_per_s, for the
+    simulation.
+    """
 
     velocity_m_per_s: Annotated[tuple[Velocity, ...], Not_empty] = Field(
         description="Velocities between the tubes: of an upstream velocity times P / (P - D).",
@@ -113,6 +173,12 @@ class Flow(Section):
     criterion: Annotated[Connors | Tema, By_kind] = Field(
         description="What gives the critical velocity of a mode."
     )
-    coupling: Lags | None = Field(
+    coupling: Coupling | None = Field(
         None, description="Fluid-elastic force, for eigenvalues against velocity; null for none."
+    )
+    acting_m_per_s: Velocity | None = Field(
+        None,
+        description="Velocity at which the fluid-elastic force of `coupling` acts in the"
+        " simulation; null: it acts in none.",
+        examples=[1.5],
     )

@@ -44,10 +44,27 @@ def pitch(structure: Tube, flow: Flow) -> Problems:
 def lags(flow: Flow) -> Problems:
     """Yield a problem unless each lag has an amplitude and a rate."""
     own = flow.coupling
-    if own is not None and len(own.amplitudes) != len(own.rates):
+    if own is not None and own.kind == "lags" and len(own.amplitudes) != len(own.rates):
         yield (
             "flow.coupling.rates",
             list(own.rates),
             f"has {len(own.rates)} values, amplitudes has {len(own.amplitudes)}: give one of each"
             " per lag",
         )
+
+
+def acting(flow: Flow) -> Problems:
+    """Yield a problem unless a flow that acts has a force."""
+    if flow.acting_m_per_s is not None and flow.coupling is None:
+        yield (
+            "flow.acting_m_per_s",
+            flow.acting_m_per_s,
+            "acts through flow.coupling, and there is none: give one, or leave acting_m_per_s out",
+        )
+
+
+def fitted_range(flow: Flow) -> Problems:
+    """Yield a problem unless the reduced velocities of a fit ascend."""
+    own = getattr(flow.coupling, "reduced_velocity", None)
+    if own is not None and own[0] >= own[1]:
+        yield "flow.coupling.reduced_velocity", list(own), "must ascend: give the lower one first"

@@ -42,6 +42,7 @@ from .quantities import (
 )
 from .structure import Damping, ModalDamping, Structure
 from .supports import LocalElement, PointMass, Support
+from .wear import Wear
 
 
 class Basis(Section):
@@ -365,5 +366,10 @@ class Config(Section):
     )
     overlay: Overlay = Field(Overlay(), description="The campaign of figure 5.")
     flow: Flow | None = Field(
-        None, description="A flow across the tube, for `vibroimpact stability`; null for none."
+        None,
+        description="A flow across the tube, for `vibroimpact stability` and fluid-elastic forces;"
+        " null for none.",
+    )
+    wear: Wear | None = Field(
+        None, description="Wear life on the study's page and in its wear.csv; null for none."
     )

@@ -13,7 +13,9 @@ from vibroimpact.geometry.centreline import SAME_PLACE_M
 from vibroimpact.geometry.sections import ROUND, outer_width, section_properties
 
 from .geometry_checks import centreline_of, off_the_tube
-from .structure import Path, UTube
+from .schema import RecordKeys
+from .structure import Path, Structure, UTube
+from .wear import Wear
 
 Problems = Iterator[tuple[str, Any, str]]
 Tube = UTube | Path
@@ -30,6 +32,18 @@ def wall(structure: Tube) -> Problems:
             section.wall_thickness_m,
             f"must be below half the outer diameter {section.outer_diameter_m}: both in metres?",
         )
+
+
+def wall_that_wears(structure: Structure, wear: Wear) -> Problems:
+    """Yield a problem unless the structure has the wall of a tube."""
+    if getattr(getattr(structure, "section", None), "kind", "none") != "tube":
+        yield "wear", "...", "is of the wall of a tube, this structure has none: leave it out"
+
+
+def wear_needs_statistics(record: RecordKeys, wear: Wear) -> Problems:
+    """Yield a problem where records hold single steps, which have no work rates."""
+    if record.every_step:
+        yield "record.every_step", True, "gives no wear work rate: leave it out, or wear"
 
 
 def axes_of_the_section(structure: Tube) -> Problems:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -139,6 +139,12 @@ class Comparison:
         impacts there, and the lines of what is not held tell nothing.
         """
         return tuple(record for record, held in enumerate(self._held) if not held)
+
+    def widened(self) -> Comparison:
+        """Return the Comparison that takes in the records that do not hold the model."""
+        wider = replace(self, with_lost=True)
+        object.__setattr__(wider, "_held", self._held)  # what holds the model is found once
+        return wider
 
     @cached_property
     def _holding(self) -> dict[int, list[float]]:

@@ -18,6 +18,7 @@ from vibroimpact.verdict.content import Conclusion
 from vibroimpact.verdict.misfit import makes_worse
 
 from . import constants
+from .free_runs import CHANCE_RUNS
 from .search import Hypothesis, Search
 
 EXACT_ALIASES = {  # what no measurement of this kind can tell apart
@@ -112,15 +113,18 @@ def beside_spectra(
     decision: Decision,
     misfit: Mapping[str, float | None],
     by_record: Sequence[Mapping[str, float | None]] = (),
+    surely_off: bool = False,
 ) -> Decision:
     """Return the Decision given the distances of free runs.
 
     Nothing is not said where spectra are far above their floor: some laws act on motion that a held
     run does not have, such as whirling. An effect that makes spectra worse, or that leaves most of
-    a large excess in most records, is refuted; where there was no excess, nothing is missing.
+    a large excess in most records, is refuted; where there was no excess, nothing is missing. One
+    beside which spectra are farther off than chance alone makes is a part of what is missing.
 
     misfit: {before_dB, after_dB, floor_dB, closed_fraction} of held-out records, None where not
     known. by_record: the same of each record: whether a tube whirls may be chance in one.
+    surely_off: whether some held-out record is, see free_runs.surely_off.
     """
     before, after, floor = misfit["before_dB"], misfit["after_dB"], misfit["floor_dB"]
     if before is None or after is None or floor is None:
@@ -139,7 +143,21 @@ def beside_spectra(
         return refuted(decision, in_favour_of_nothing=closed is None)
     far = after - floor > 2.0 * constants.FREE_EXCESS_DB and (closed or 0.0) < constants.PARTLY
     far = far and _most_stay_off(by_record or [misfit])
-    return refuted(decision) if far and decision.verdict in ("named", "ambiguous") else decision
+    if decision.verdict == "partly_explained":
+        return decision
+    return refuted(decision) if far else _in_part(decision) if surely_off else decision
+
+
+def _in_part(decision: Decision) -> Decision:
+    """Return the Decision whose hypotheses are at most a part of what is missing, but by chance."""
+    ranked = tuple((each, chance / (1 + CHANCE_RUNS)) for each, chance in decision.ranked)
+    moved = sum(chance for _, chance in decision.ranked) - sum(chance for _, chance in ranked)
+    return replace(
+        decision,
+        verdict="partly_explained",
+        ranked=ranked,
+        something_else=decision.something_else + moved,
+    )
 
 
 def _most_stay_off(by_record: Sequence[Mapping[str, float | None]]) -> bool:

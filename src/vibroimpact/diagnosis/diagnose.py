@@ -35,7 +35,7 @@ from .decision import Decision, ambiguity, beside_spectra, decide, far_off, gain
 from .evidence import evidence_of
 from .explanations import Point, Structure
 from .floor import floor_of
-from .free_runs import FreeRuns, distance, free_runs, regions, with_after
+from .free_runs import FreeRuns, distance, free_runs, regions, surely_off, with_after
 from .free_search import free_search
 from .identified.identified import PREDICTION, Identified, identified
 from .identified.search import left_and_floor, search_laws
@@ -153,21 +153,18 @@ def _searched(
     effects = [each for each in EFFECTS.values() if each.reported not in unseen]
 
     def left(point: Point) -> bool:
-        return _far(with_after(runs, structure, signals, point), signals)
+        after = with_after(runs, structure, signals, point)
+        return bool(surely_off(after, structure, signals, point, signals.fit()))
 
     searched = search(comparison, most, effects, log, left)
-    if comparison.lost and _far(runs, signals) and not gains(searched):
+    far = far_off(distance(runs, signals, signals.fit()))
+    if comparison.lost and far and not gains(searched):
         log("nothing gains on the records that hold the model: the others are compared too")
-        wider = replace(comparison, with_lost=True)
+        wider = comparison.widened()
         again = search(wider, most, effects, log, left)
         if gains(again):
             return wider, again
     return comparison, searched
-
-
-def _far(runs: FreeRuns, signals: Signals) -> bool:
-    """Return whether spectra after completion are far off on the fitted records."""
-    return far_off(distance(runs, signals, signals.fit()))
 
 
 def _run_identified(
@@ -361,9 +358,20 @@ def _verified(found: _Found, told: dict[str, Any]) -> Decision:
     if found.comparison is not None:
         records = range(len(found.signals.load))
         rows = [distance(found.runs, found.signals, [record]) for record in records]
-        return beside_spectra(found.decision, told, rows)
+        return beside_spectra(found.decision, told, rows, _surely_off(found))
     worse = found.decision.verdict not in ("none", "unknown") and makes_worse(told)
     return refuted(found.decision) if worse else found.decision
+
+
+def _surely_off(found: _Found) -> bool:
+    """Return whether a record that took no part is off by more than chance with what is named."""
+    if found.comparison is None or found.decision.best is None:
+        return False
+    if found.decision.verdict not in ("named", "ambiguous"):
+        return False
+    signals, point = found.signals, found.decision.best.point
+    records = signals.holdout() if len(signals.holdout()) else signals.fit()
+    return bool(surely_off(found.runs, found.comparison.structure, signals, point, records))
 
 
 def _misfits(found: _Found) -> dict[str, Any]:

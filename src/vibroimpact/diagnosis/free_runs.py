@@ -16,12 +16,14 @@ import numpy as np
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.verdict.misfit import closed_fraction
 
+from .constants import FREE_EXCESS_DB
 from .explanations import Point, Structure
 from .measurement.signals import Signals
 from .measurement.simulated_records import simulate_records
 from .measurement.stretches import valid_samples, whole_rates
 
 SEEDS = 4  # whirling may begin in one run and not in another
+CHANCE_RUNS = 20  # of a record that seems off: a measurement is the farthest of all once in 21
 SETTLE_S = 1.0  # at the start of a record
 ABOVE_NOISE_DB = 6.0
 SEGMENT_S = 2.0
@@ -69,7 +71,46 @@ def with_after(
     return replace(runs, after=_psd(values, signals)[1])
 
 
-def _simulated(structure, signals, point, records=None):
+def surely_off(
+    runs: FreeRuns,
+    structure: Structure,
+    signals: Signals,
+    after: Point,
+    records: Sequence[int] | np.ndarray,
+) -> list[int]:
+    """Return which of some records are farther from the model after completion than its own runs
+    are from one another, the farthest first; after: its Point.
+
+    Whether a tube whirls may be chance. A record that is off some runs is compared with
+    CHANCE_RUNS of them: where the model whirls with any probability, and the measurement does not
+    (or the reverse), all of them differ from it in 2 % of the records at most.
+    """
+    beyond = _beyond_chance(runs, signals)
+    off = [int(record) for record in records if beyond[record] > FREE_EXCESS_DB]
+    if off:
+        more = _simulated(structure, signals, after, off, range(SEEDS, CHANCE_RUNS))
+        many = np.concatenate([runs.after, _psd(more, signals)[1]], axis=1)
+        beyond = _beyond_chance(replace(runs, after=many), signals)
+    off = [record for record in off if beyond[record] > FREE_EXCESS_DB]
+    return sorted(off, key=lambda record: -beyond[record])
+
+
+def _beyond_chance(runs, signals):
+    """Return (record,) dB: by how much farther the measured spectra of a record are from the mean
+    of the runs after completion than the farthest of these runs is from that of the others.
+    """
+    cells = _in_bands(runs, signals)
+    out = np.full(len(runs.measured), -np.inf)
+    for record, known in enumerate(cells["known"]):
+        if known.any():
+            power = cells["after"][record]
+            others = [np.delete(power, seed, axis=0) for seed in range(len(power))]
+            own = [_rms(one - _mean(rest), known) for one, rest in zip(power, others, strict=True)]
+            out[record] = _rms(cells["measured"][record] - _mean(power), known) - max(own)
+    return out
+
+
+def _simulated(structure, signals, point, records=None, seeds=range(SEEDS)):
     """Return (record, seed, channel, sample): free runs of a Point, as the sensors record them, NaN
     of other records than those given.
 
@@ -84,9 +125,9 @@ def _simulated(structure, signals, point, records=None):
     runs = [
         (record, float(signals.gap[record]), seed)
         for record in (range(len(signals.load)) if records is None else records)
-        for seed in range(SEEDS)
+        for seed in seeds
     ]
-    out = np.full((len(signals.load), SEEDS, len(signals.names), samples), np.nan, np.float32)
+    out = np.full((len(signals.load), len(seeds), len(signals.names), samples), np.nan, np.float32)
     for scheme in dict.fromkeys((integration.scheme, "newmark")):
         schedule = rates.schedule(samples / signals.rate, scheme)
         try:
@@ -133,7 +174,7 @@ def distance(
     for name in ("before", "after"):
         power = cells[name][records]
         floors.append(_floor(power, chosen))
-        mean = 10.0 * np.log10(np.mean(10.0 ** (power / 10.0), axis=1))
+        mean = _mean(power, axis=1)
         own = floors[-1] * np.sqrt((1.0 - 1.0 / SEEDS) / 2.0)
         away.append(float(np.hypot(_rms(measured - mean, chosen), own)))
     return {
@@ -168,6 +209,11 @@ def _in_bands(runs, signals):
     return out | {"known": known}
 
 
+def _mean(power, axis=0):
+    """Return the mean over runs of power in dB."""
+    return 10.0 * np.log10(np.mean(10.0 ** (power / 10.0), axis=axis))
+
+
 def _rms(difference, chosen):
     """Return the RMS of chosen cells."""
     return float(np.sqrt(np.mean(difference[chosen] ** 2)))
@@ -185,7 +231,7 @@ def regions(runs: FreeRuns, signals: Signals, shown: int) -> list[dict]:
     in units of the scatter between its runs.
     """
     cells = _in_bands(runs, signals)
-    mean = 10.0 * np.log10(np.mean(10.0 ** (cells["before"] / 10.0), axis=1))
+    mean = _mean(cells["before"], axis=1)
     scatter = np.maximum(np.abs(np.diff(cells["before"], axis=1)[:, 0]) / np.sqrt(2.0), 0.5)
     off = np.where(cells["known"], cells["measured"] - mean, 0.0)
     z = off / np.hypot(scatter, np.sqrt(np.mean(scatter**2)))

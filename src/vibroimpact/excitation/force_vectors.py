@@ -170,4 +170,5 @@ MODE_FIELDS = (
     "initial_displacement",
     "initial_velocity",
     "constant_force",
+    "fluid_shapes",
 )

@@ -47,9 +47,9 @@ def drive_shapes(
         raise ValueError("excitation.kind: turbulence needs a tube (structure.kind u_tube or path)")
     pieces, channels = [], []
     acting = stretches(structure.centreline, force)
-    for begin, end, factor in _cut(acting, structure.node_arc_length):
+    for begin, end, factor in cut_at_nodes(acting, structure.node_arc_length):
         places = begin + (end - begin) * POINTS
-        rows = [_taken_rows(structure, place, shapes) for place in places]
+        rows = [shapes_at(structure, place, shapes) for place in places]
         pieces.append((begin, end, factor, places, rows))
     for across in directions(structure.centreline, force):
         values = [
@@ -107,10 +107,10 @@ def directions(line: Centreline, force: ConfigPart) -> list[Callable[[float], np
     return [first, second] if force.both_directions else [first]
 
 
-def _cut(
+def cut_at_nodes(
     found: list[tuple[float, float, float]], nodes: np.ndarray
 ) -> Iterator[tuple[float, float, float]]:
-    """Yield the stretches cut at the nodes (node,) in m, as (begin, end, factor)."""
+    """Yield stretches (begin, end in m, value) cut at the nodes (node,) in m."""
     for begin, end, factor in found:
         inner = nodes[(nodes > begin + SAME_PLACE_M) & (nodes < end - SAME_PLACE_M)]
         ends = [begin, *inner, end]
@@ -118,7 +118,7 @@ def _cut(
             yield float(first), float(last), factor
 
 
-def _taken_rows(structure: TubeStructure, place: float, shapes: np.ndarray) -> np.ndarray:
+def shapes_at(structure: TubeStructure, place: float, shapes: np.ndarray) -> np.ndarray:
     """Return (3, mode) the shapes at an arc length in m; the structure does not keep its rows."""
     known = place in structure.rows
     rows = structure.displacement_rows(place)

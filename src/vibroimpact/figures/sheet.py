@@ -19,7 +19,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
-from vibroimpact.io.display_units import display_unit
 from vibroimpact.io.records import write_cells, write_text
 from vibroimpact.io.whole_file import whole_file
 
@@ -55,19 +54,11 @@ class Sheet:
     ):
         self.name, self.caption = name, caption
         self.tables: list[tuple[str, str, dict[str, np.ndarray]]] = []
-        self.units: dict[str, tuple[str, float]] = {}
         self.figure = Figure(figsize=size or (WIDTH_IN, 4.2), layout="constrained")
         self.axes: dict[str, Axes] = self.figure.subplot_mosaic(mosaic, **gridspec)
         for key, axes in self.axes.items():
             axes.set_label(key)
         self.figure.suptitle(title, x=0.01, ha="left")
-
-    def show_in_prefix(self, column: str, unit: str, values: Iterable[float | None]) -> None:
-        """Show a column in the prefix that suits its values, whatever is drawn from here on.
-
-        unit: SI unit of the column; values: SI values of all that is drawn of it.
-        """
-        self.units[column] = display_unit(unit, values)
 
     def record(self, axes: Axes, curve: str, **values: ArrayLike) -> str:
         """Add rows to the table; return the text "rows FIRST:LAST" of their place in it.
@@ -108,9 +99,9 @@ class Sheet:
         (x_column, x_values), (y_column, y_values) = x, y
         if low is not None and high is not None:
             axes.fill_between(
-                self._shown(x_column, x_values),
-                self._shown(y_column, low),
-                self._shown(y_column, high),
+                shown(x_column, x_values),
+                shown(y_column, low),
+                shown(y_column, high),
                 color=style.get("color"),
                 alpha=0.18,
                 linewidth=0,
@@ -118,7 +109,7 @@ class Sheet:
             tags = {**(tags or {}), f"{y_column}_low": low, f"{y_column}_high": high}
         place = self.record(axes, curve, **(tags or {}), **{x_column: x_values, y_column: y_values})
         (line,) = axes.plot(
-            self._shown(x_column, x_values), self._shown(y_column, y_values), gid=place, **style
+            shown(x_column, x_values), shown(y_column, y_values), gid=place, **style
         )
         self._label(axes, x_column, y_column)
         return line
@@ -147,13 +138,11 @@ class Sheet:
                 f"{y_column}_high": high,
             },
         )
-        middle = self._shown(y_column, y_values)
-        spread = np.array(
-            [middle - self._shown(y_column, low), self._shown(y_column, high) - middle]
-        )
+        middle = shown(y_column, y_values)
+        spread = np.array([middle - shown(y_column, low), shown(y_column, high) - middle])
         self._label(axes, x_column, y_column)
         container = axes.errorbar(
-            self._shown(x_column, x_values),
+            shown(x_column, x_values),
             middle,
             np.maximum(spread, 0.0),
             **{"capsize": 2, "linewidth": 1, **style},
@@ -172,7 +161,7 @@ class Sheet:
     ) -> Line2D:
         """Draw a line across the axes at one value of a column (vertical: of the x axis)."""
         self.record(axes, curve, **{column: value})
-        place = float(self._shown(column, value))
+        place = float(shown(column, value))
         return axes.axvline(place, **style) if vertical else axes.axhline(place, **style)
 
     def map(
@@ -190,9 +179,9 @@ class Sheet:
             **{y_column: grid[1].ravel(), x_column: grid[0].ravel(), z_column: np.ravel(z_values)},
         )
         mesh = axes.pcolormesh(
-            edges(self._shown(x_column, x_values)),
-            np.exp(edges(np.log(self._shown(y_column, y_values)))),
-            self._shown(z_column, z_values),
+            edges(shown(x_column, x_values)),
+            np.exp(edges(np.log(shown(y_column, y_values)))),
+            shown(z_column, z_values),
             rasterized=True,
             gid=place,
             **style,
@@ -274,24 +263,9 @@ class Sheet:
 
     def _label(self, axes, x_column, y_column):
         if not axes.get_xlabel():
-            axes.set_xlabel(self._label_of(x_column))
+            axes.set_xlabel(label_of(x_column))
         if not axes.get_ylabel():
-            axes.set_ylabel(self._label_of(y_column))
-
-    def _label_of(self, column):
-        """Return the label of an axis, with the unit that the column is shown in."""
-        text = label_of(column)
-        return (
-            f"{text.rpartition(' (')[0]} ({self.units[column][0]})"
-            if column in self.units
-            else text
-        )
-
-    def _shown(self, column, values):
-        """Return SI values in the unit of the axis."""
-        if column in self.units:
-            return np.asarray(values, dtype=float) * self.units[column][1]
-        return shown(column, values)
+            axes.set_ylabel(label_of(y_column))
 
 
 def edges(centres: ArrayLike) -> np.ndarray:

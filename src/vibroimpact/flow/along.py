@@ -13,6 +13,7 @@ import numpy as np
 from vibroimpact.config.flow import Flow
 from vibroimpact.config.schema import Config, Sensors
 from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.excitation.fluid_rows import flow_stretches
 from vibroimpact.excitation.turbulence import directions
 from vibroimpact.geometry.centreline import SAME_PLACE_M, Centreline, build_centreline
 from vibroimpact.geometry.sections import outer_width
@@ -61,7 +62,7 @@ class TubeInFlow:
 def tube_in_flow(config: Config, flow: Flow) -> TubeInFlow:
     """Return the TubeInFlow of a configuration of a tube and its section `flow`."""
     line = build_centreline(config.structure)
-    acting = _stretches(line, flow)
+    acting = flow_stretches(line, flow)
     places, weight = _gauss([end for begin, last, *_ in acting for end in (begin, last)], line)
     factor, density = np.zeros(len(places)), np.full(len(places), flow.density_kg_per_m3)
     for begin, end, own_factor, own_density in acting:
@@ -76,20 +77,6 @@ def tube_in_flow(config: Config, flow: Flow) -> TubeInFlow:
     mass, section = _mass(config, line, places), cast(Any, config.structure).section
     flowing = Along(weight, line.length, factor, density, mass)
     return TubeInFlow(model, outer_width(section), flowing, along)
-
-
-def _stretches(line: Centreline, flow: Flow) -> list[tuple[float, float, float, float]]:
-    """Return [(begin, end in m, velocity factor, density)] of the arc lengths in the flow."""
-    if not flow.stretches:
-        return [(0.0, line.length, 1.0, flow.density_kg_per_m3)]
-    found = []
-    for number, own in enumerate(flow.stretches):
-        begin, end = line.stretch(own.from_m, own.to_m, f"flow.stretches[{number}]")
-        found.append((begin, end, own.velocity_factor, own.density_kg_per_m3))
-    return [
-        (begin, end, factor, flow.density_kg_per_m3 if density is None else density)
-        for begin, end, factor, density in found
-    ]
 
 
 def _gauss(cuts: Sequence[float], line: Centreline) -> tuple[np.ndarray, np.ndarray]:

@@ -1,12 +1,7 @@
-"""Eigenvalues of a tube under a fluid-elastic force with memory.
+"""Eigenvalues of a tube under a fluid-elastic force with memory (excitation.fluid_elastic).
 
-On mass-orthonormal modes q, in each zone of one velocity V and density rho,
-
-    force = -Q (a0 q + a1 (D/V) q' + sum_j b_j z_j),   z_j' = -gamma_j (V/D) z_j + q',
-    Q = rho V²/2 int phi phi^T ds.
-
-The lags make it a system of ordinary differential equations: its eigenvalues need no frequency to
-be assumed, as tables of coefficients do.
+On mass-orthonormal modes q, each zone of one velocity and density has the overlap
+rho/2 int phi phi^T ds of the modes.
 """
 
 from __future__ import annotations
@@ -17,21 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
+from vibroimpact.excitation.fluid_elastic import FluidForce
+
 SCANNED = 60  # velocities between 0 and the highest, between which a crossing is looked for
-
-
-@dataclass(frozen=True, eq=False)
-class FluidForce:
-    """Coefficients of the force.
-
-    stiffness, damping: a0, a1. amplitudes, rates (lag,): b, gamma. diameter: D in m.
-    """
-
-    stiffness: float
-    damping: float
-    amplitudes: tuple[float, ...]
-    rates: tuple[float, ...]
-    diameter: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,26 +42,23 @@ def system(
     """
     modes = len(stiffness)
     stiff, drag = stiffness.copy(), damping.copy()
-    lags = [
-        (zone, amplitude, rate)
-        for zone in zones
-        for amplitude, rate in zip(force.amplitudes, force.rates, strict=True)
-        if zone.factor * velocity > 0.0
-    ]
+    lags = []
+    for zone in zones:
+        laws = force.laws(np.array([zone.factor * velocity]))
+        stiff += laws.stiffness[0] * zone.overlap
+        drag += laws.damping[0] * zone.overlap
+        if zone.factor * velocity > 0.0:
+            pairs = zip(laws.lag_stiffness[0], laws.lag_rate[0], strict=True)
+            lags += [(strength * zone.overlap, rate) for strength, rate in pairs]
     size = modes * (2 + len(lags))
     matrix = np.zeros((size, size))
     eye, first, second = np.eye(modes), slice(0, modes), slice(modes, 2 * modes)
-    for zone in zones:
-        own = zone.factor * velocity
-        stiff += force.stiffness * own**2 * zone.overlap
-        drag += force.damping * own * force.diameter * zone.overlap
     matrix[first, second] = eye
     matrix[second, first], matrix[second, second] = -stiff, -drag
-    for number, (zone, amplitude, rate) in enumerate(lags):
-        own, at = zone.factor * velocity, modes * (2 + number)
-        lag = slice(at, at + modes)
-        matrix[second, lag] = -amplitude * own**2 * zone.overlap
-        matrix[lag, lag] = -rate * own / force.diameter * eye
+    for number, (strength, rate) in enumerate(lags):
+        lag = slice(modes * (2 + number), modes * (3 + number))
+        matrix[second, lag] = -strength
+        matrix[lag, lag] = -rate * eye
         matrix[lag, second] = eye
     return matrix
 

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 from typing import Any
 
 import numpy as np
 
-from vibroimpact.config.flow import Flow, Lags
+from vibroimpact.config.flow import Coupling, Flow
 from vibroimpact.config.name_checks import TUBES
 from vibroimpact.config.schema import Config
+from vibroimpact.excitation.fluid_elastic import fluid_force, outside_fit
 from vibroimpact.linear.support_groups import SupportDirection, support_directions
 
 from .along import TubeInFlow, tube_in_flow
-from .coupled import FluidForce, Zone, critical_velocity, oscillations, system
+from .coupled import Zone, critical_velocity, oscillations, system
 from .critical_velocity import connors, mass_damping, tema_factor
 
 MODES = 8  # the lowest of each direction that are told
@@ -85,11 +86,12 @@ class Eigenvalues:
 @dataclass(frozen=True, eq=False)
 class Stability:
     """The rows of all modes, velocities and states of the supports, and the Eigenvalues of a
-    fluid-elastic force where one is given.
+    fluid-elastic force where one is given; warnings where that is extrapolated.
     """
 
     rows: tuple[StabilityRow, ...]
     eigenvalues: Eigenvalues | None = None
+    warnings: tuple[str, ...] = ()
 
     def worst(self, velocity: float, inactive: int) -> StabilityRow | None:
         """Return the row with the largest ratio at a velocity, so many supports not holding; None
@@ -131,7 +133,14 @@ def stability(
         )
     held = _Held(flow, tube_in_flow(config, flow), stiffness, damping)
     rows = tuple(row for names in held.states(inactive) for row in held.rows(names))
-    return Stability(rows, held.eigenvalues(flow.coupling) if flow.coupling else None)
+    found = Stability(rows, held.eigenvalues(flow.coupling) if flow.coupling else None)
+    worst = [found.worst(velocity, 0) for velocity in flow.velocity_m_per_s]
+    told = [
+        outside_fit(flow.coupling, row.velocity, row.frequency, held.tube.diameter)
+        for row in worst
+        if row is not None
+    ]
+    return replace(found, warnings=tuple(filter(None, told)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,20 +235,14 @@ class _Held:
         factor = tema_factor(rule.pattern_deg, rule.pitch_m / diameter, damped)
         return (factor * frequency * diameter,) * 2
 
-    def eigenvalues(self, own: Lags) -> Eigenvalues:
+    def eigenvalues(self, own: Coupling) -> Eigenvalues:
         """Return the Eigenvalues with a fluid-elastic force, all supports holding."""
         stiff, drag = self.matrices(())
         squares, vectors = np.linalg.eigh(stiff)
         kept = vectors[:, :STATES]
         stiff, drag = np.diag(squares[:STATES]), kept.T @ drag @ kept
         zones = [Zone(z.factor, kept.T @ z.overlap @ kept) for z in self.tube.zones()]
-        force = FluidForce(
-            own.stiffness,
-            own.damping,
-            own.amplitudes,
-            own.rates,
-            self.tube.diameter,
-        )
+        force = fluid_force(own, self.tube.diameter)
         highest = max(self.flow.velocity_m_per_s)
         velocities = np.linspace(0.0, highest, VELOCITIES)
         found = [

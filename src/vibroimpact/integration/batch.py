@@ -1,10 +1,11 @@
 """Integration of a batch of cases: checks before, the kernel, statistics and energies after."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from vibroimpact.excitation.fluid_elastic import FluidLaws
 from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.reduction.modal_model import ModalModel
 
@@ -13,7 +14,7 @@ from .kernel_layout import ModalLayout
 from .kernels.decimation import BEHIND, RATIO, decimate
 from .kernels.lanes import LANES
 from .kernels.march import initial_forces, march
-from .kernels.tables import Contact, Laws, Modal, State, Work
+from .kernels.tables import Contact, Fluid, Laws, Modal, State, Work
 from .output_filter import OutputFilter, output_filter
 from .run_statistics import LARGEST
 from .step_stability import require_stable_step
@@ -126,6 +127,7 @@ def integrate_batch(
     drive: Drive,
     receive: Receive | None = None,
     initial: np.ndarray | None = None,
+    fluid: Sequence[FluidLaws] = (),
 ) -> BatchResult:
     """Integrate up to LANES cases side by side.
 
@@ -136,6 +138,7 @@ def integrate_batch(
         again. The result then holds none, and no array grows with the duration.
     initial (mode, LANES): modal amplitudes at which every lane rests, see `rest_state`; the
         model's initial state is added to them.
+    fluid (case,): the fluid-elastic force of each case; none for the model's in all.
 
     Raises IntegrationError: the contact is too stiff for the step, or the step makes a motion grow
     by itself (before anything runs), or the run diverged.
@@ -150,6 +153,7 @@ def integrate_batch(
         drive,
         contraction,
         initial,
+        fluid,
     ).finish(receive)
 
 
@@ -241,6 +245,7 @@ class Run:
         drive: Drive,
         contraction: float,
         initial: np.ndarray | None = None,
+        fluid: Sequence[FluidLaws] = (),
     ):
         self.model, self.schedule, self.drive = layout.model, schedule, drive
         self.cases, self.contraction = np.size(gap), contraction
@@ -252,6 +257,7 @@ class Run:
         self.laws = layout.laws(lane_gap)
         self.state, self.tally, self.work = layout.state(), layout.tally(), layout.work()
         self.hold = layout.hold(self.modal)
+        self.fluid = layout.fluid(self.modal, self.cases, fluid)
         self.begin(initial)
         # The second filter stage needs this many ticks before the first of a chunk.
         self.history = schedule.filter.second.size - schedule.filter.step
@@ -276,6 +282,7 @@ class Run:
             self.modal,
             self.contact,
             self.laws,
+            self.fluid,
             self.state,
             self.work,
             self.forces(0, 1)[0],
@@ -373,6 +380,7 @@ class Run:
                 self.contact,
                 self.laws,
                 self.hold,
+                self.fluid,
                 self.state,
                 self.tally,
                 output,
@@ -461,6 +469,7 @@ def start_state(
     modal: Modal,
     contact: Contact,
     laws: Laws,
+    fluid: Fluid,
     state: State,
     work: Work,
     drive: np.ndarray,
@@ -477,8 +486,10 @@ def start_state(
         state.q[-1] = layout.per_mode(q)
         state.row_displacement[...], state.row_velocity[...] = shapes @ q, shapes @ v
         initial_forces(modal, contact, laws, state, work)
+    start_fluid(layout, fluid, q, v)
     driven = modal.row_force_channel >= 0
-    state.row_force[driven] = drive[modal.row_force_channel[driven]]
+    forces = np.concatenate([drive, fluid.force])
+    state.row_force[driven] = forces[modal.row_force_channel[driven]]
     q_next_free, dq = layout.step(modal.dt).start(q, v, shapes.T @ state.row_force)
     state.q_next_free[...], state.dq[...] = layout.per_mode(q_next_free), layout.per_mode(dq)
     moves = np.any(state.q_next_free, axis=1) | np.any(state.dq, axis=1)
@@ -486,6 +497,16 @@ def start_state(
         np.any(moves[first:last])
         for first, last in zip(layout.mode_start[:-1], layout.mode_start[1:], strict=True)
     ]
+
+
+def start_fluid(layout: ModalLayout, fluid: Fluid, q: np.ndarray, v: np.ndarray) -> None:
+    """Put the fluid-elastic force at modal amplitudes and rates (mode, LANES) into its table. The
+    lags are 0: the flow begins then.
+    """
+    shapes = layout.model.fluid_shapes.T
+    fluid.displacement[...] = fluid.free[...] = shapes @ q
+    fluid.memory[...] = shapes @ v
+    fluid.force[...] = -(fluid.stiffness * (shapes @ q) + fluid.damping * (shapes @ v))
 
 
 def modal_energies(layout: ModalLayout, dt: float, state: State) -> tuple[np.ndarray, np.ndarray]:

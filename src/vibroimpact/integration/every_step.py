@@ -25,7 +25,8 @@ class Traces:
     element_displacement (case, element, step) m, element_force: N on the structure.
     energy {term: (case,)} J over the whole run: input_work; dissipated by modal damping;
         contact_work done by contacts and elements; mechanical, the change of the energy of the
-        modes; stored, the change of that in contacts and elements.
+        modes; stored, the change of that in contacts and elements; where a flow acts fluid_work,
+        its part of the input work.
     sliding_work (case, support) J: normal force times slip.
     slip_work (case, element) J: slider force times slip.
     """
@@ -73,7 +74,8 @@ def integrate_every_step(
     force = np.zeros((ticks * RATIO + 1, layout.drive_shapes.shape[1], LANES))
     force[:, :channels, :cases] = drive(0, ticks * RATIO + 1)
     force[:, channels:] = 1.0  # the dead load, see ModalLayout.drive_shapes
-    start_state(layout, modal, contact, laws, state, work, force[0], start_amplitudes(model, rest))
+    fluid, start = layout.fluid(modal, cases), start_amplitudes(model, rest)
+    start_state(layout, modal, contact, laws, fluid, state, work, force[0], start)
     start_displacement, start_force = state.row_displacement.copy(), state.row_force.copy()
     mechanical_before = np.sum(modal_energies(layout, modal.dt, state), axis=0)
     stored_before = stored_energy(contact, laws, state)
@@ -84,6 +86,7 @@ def integrate_every_step(
         contact,
         laws,
         layout.hold(modal),
+        fluid,
         state,
         tally,
         output,
@@ -121,6 +124,7 @@ def integrate_every_step(
             "contact_work": tally.contact_work[0, :cases],
             "mechanical": mechanical[:cases],
             "stored": stored[:cases],
+            **({"fluid_work": tally.fluid_work[0, :cases]} if len(fluid.force) else {}),
         },
         sliding_work=tally.sliding_work[:, :cases].T,
         slip_work=tally.slip_work[:, :cases].T,

@@ -325,13 +325,17 @@ class HeldRun(Run):
                 own = self.layouts[lane]
                 state, amplitudes = own.state(), np.outer(rest, np.ones(LANES))
                 still = np.zeros((own.drive_shapes.shape[1], LANES))
+                fluid = own.fluid(own.modal(self.dt))
                 start_state(
-                    *(own, own.modal(self.dt), self.contact, self.laws, state, own.work(), still),
+                    *(own, own.modal(self.dt), self.contact, self.laws, fluid),
+                    *(state, own.work(), still),
                     start_amplitudes(own.model, amplitudes),
                 )
                 for name in State._fields:
                     if name not in ("counter", "group_active"):
                         getattr(self.state, name)[..., lane] = getattr(state, name)[..., lane]
+                for name in ("force", "displacement", "free"):
+                    getattr(self.fluid, name)[..., lane] = getattr(fluid, name)[..., lane]
                 self.state.group_active[...] |= state.group_active
         self.hold.measured[...] = to_lanes(self._drive(0, 1)[0], 0.0)[sensors]
         self.hold.difference[...] = self.hold.measured

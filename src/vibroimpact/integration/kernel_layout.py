@@ -5,13 +5,27 @@ from functools import cache, cached_property
 
 import numpy as np
 
+from vibroimpact.excitation.fluid_elastic import FluidLaws
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .kernels.decimation import CHANNEL_BLOCK, RATIO, SLOTS
 from .kernels.lanes import LANES
 from .kernels.panels import PANEL
-from .kernels.tables import QUIET, Contact, Hold, Laws, Modal, Output, State, Tally, Trace, Work
+from .kernels.tables import (
+    QUIET,
+    Contact,
+    Fluid,
+    Hold,
+    Laws,
+    Modal,
+    Output,
+    State,
+    Tally,
+    Trace,
+    Work,
+)
 from .modal_step import StepCoefficients, step_coefficients
+from .support_lands import law_lands
 
 FIXED_POINT_TOLERANCE = 1e-4  # relative change of the contact forces in the last pass, at most
 FIXED_POINT_ERROR = 1e-6  # relative error left in them: the change times the contraction
@@ -37,6 +51,7 @@ class ModalLayout:
     implicit_shapes: for each group {RowKey: shape (mode of the group,)}, in the order of its rows.
     drive_shapes (mode, force_channel): the model's, then, where there is a dead load, that as a
         channel of constant force 1.
+    force_shapes (mode, channel): drive_shapes, then the rows of the fluid-elastic force.
     padded: number of modes after padding every group to whole panels.
     place (mode,): index of each mode among the padded ones.
     """
@@ -46,6 +61,7 @@ class ModalLayout:
         self.drive_shapes = model.drive_shapes
         if np.any(model.constant_force):
             self.drive_shapes = np.column_stack([model.drive_shapes, model.constant_force])
+        self.force_shapes = np.column_stack([self.drive_shapes, model.fluid_shapes])
         self.groups: list[tuple[np.ndarray, list[int]]] = []
         self.implicit_shapes: list[dict[RowKey, np.ndarray]] = []
         self._make_groups()
@@ -70,7 +86,7 @@ class ModalLayout:
         for modes, _ in model.blocks:
             moved = {key: shape[modes] for key, shape in shapes.items() if np.any(shape[modes])}
             driven = [
-                c for c in range(self.drive_shapes.shape[1]) if np.any(self.drive_shapes[modes, c])
+                c for c in range(self.force_shapes.shape[1]) if np.any(self.force_shapes[modes, c])
             ]
             self.groups.append((np.asarray(modes), driven))
             self.implicit_shapes.append(moved)
@@ -130,7 +146,7 @@ class ModalLayout:
     def _group_row_shapes(self, g: int) -> np.ndarray:
         """Shape of every row of group g over its modes: (row, mode of the group)."""
         modes, driven = self.groups[g]
-        drive = self.drive_shapes[modes][:, driven].T
+        drive = self.force_shapes[modes][:, driven].T
         implicit = list(self.implicit_shapes[g].values())
         return np.array([*implicit, *drive]).reshape(-1, len(modes))
 
@@ -225,6 +241,7 @@ class ModalLayout:
         columns |= _element_columns(model)
         return Laws(
             contact_point=point,
+            land=law_lands(model, round_points)[0],
             flat=np.repeat([0, 1], [len(round_points), len(special.land_point)]).astype(np.int64),
             normal_1=np.outer(normal[:, 0], np.ones(LANES)),
             normal_2=np.outer(normal[:, 1], np.ones(LANES)),
@@ -251,6 +268,33 @@ class ModalLayout:
         none = np.zeros(0, np.int64)
         empty = [np.zeros((0, LANES)) for _ in range(4)]
         return Hold(none, np.zeros(1, np.int64), none, np.zeros((0, 0, LANES)), *empty)
+
+    def fluid(self, modal: Modal, cases: int = LANES, laws: Sequence[FluidLaws] = ()) -> Fluid:
+        """The kernel's Fluid of the first lanes; in the others, without stops near, it would grow.
+
+        laws: those of each case, none for the model's in all.
+        """
+        drives, rows = self.drive_shapes.shape[1], self.model.fluid_shapes.shape[1]
+        own = [np.flatnonzero(modal.row_force_channel == drives + x) for x in range(rows)]
+        lanes = laws or [self.model.fluid_laws] * cases
+        lags = self.model.fluid_laws.lag_rate.shape[1]
+
+        def stacked(name: str) -> np.ndarray:
+            values = np.stack([getattr(lane, name).reshape(-1) for lane in lanes], axis=-1)
+            return np.pad(values, ((0, 0), (0, LANES - len(lanes))))
+
+        turn = np.maximum(stacked("lag_rate") * modal.dt, 1.0e-300)
+        moving = ("force", "displacement", "free", "memory")
+        return Fluid(
+            row_start=np.cumsum([0, *map(len, own)]).astype(np.int64),
+            row=np.concatenate([*own, np.zeros(0, np.int64)]).astype(np.int64),
+            lag_start=lags * np.arange(rows + 1, dtype=np.int64),
+            decay=np.exp(-turn),
+            gain=-np.expm1(-turn) / turn,
+            lag=_aligned((rows * lags, LANES)),
+            **{name: stacked(name) for name in ("stiffness", "damping", "lag_stiffness")},
+            **{name: _aligned((rows, LANES)) for name in moving},
+        )
 
     def state(self) -> State:
         """A structure at rest."""
@@ -283,7 +327,9 @@ class ModalLayout:
         counts = {
             "element_work": elements,
             "slip_work": elements,
+            "land_work": law_lands(self.model, self._round_points())[1],
             "input_work": 1,
+            "fluid_work": 1,
             "contact_work": 1,
             "residual": 1,
             "dissipated": 1,

@@ -63,6 +63,7 @@ def statistics(runs: Counted, run: int, steps_per_second: float) -> dict[str, np
     per_impact = np.divide(1.0, impacts, out=np.full(impacts.shape, np.nan), where=impacts > 0)
     rows, elements = runs.contact_rows, runs.element_rows
     return {
+        **_work_of_lands(tally, steps * dt),
         "stress_rms": np.sqrt(tally["square_stress"] / steps),
         "stress_peak": np.sqrt(tally["peak_square_stress"]),
         "contact_fraction": tally["contact_steps"] / steps,
@@ -87,3 +88,13 @@ def statistics(runs: Counted, run: int, steps_per_second: float) -> dict[str, np
         "element_power": -tally["element_work"] / (steps * dt),
         "slip_power": tally["slip_work"] / (steps * dt),
     }
+
+
+def _work_of_lands(tally: dict[str, np.ndarray], duration: float) -> dict[str, np.ndarray]:
+    """Return the work rate of each land by name, nothing where no support has two lands."""
+    sliding = tally["sliding_work"]
+    if not tally["land_work"].size:
+        return {}
+    lands = np.array(tally["land_work"]).reshape(len(sliding), -1)
+    lands[:, 0] = np.where(lands.any(axis=1), lands[:, 0], sliding)  # a round hole is one land
+    return {"land_work_rate": lands / duration}

@@ -108,14 +108,25 @@ def steady_series(
     initial = _linear_steady_state(model, drive)
     state.slider_force[...] = _slider_force(model, initial[0])
     force = _with_dead_load(samples, layout)
-    start_state(layout, modal, contact, laws, state, work, force[0], initial)
+    fluid = layout.fluid(modal)
+    start_state(layout, modal, contact, laws, fluid, state, work, force[0], initial)
     force = np.ascontiguousarray(np.roll(force, -1, axis=0))
     output = layout.output(np.zeros((RATIO, SLOTS)), drive.steps // RATIO, rate)
     for period in range(periods_before + 1):
         trace = layout.trace(drive.steps if period == periods_before else 0)
         state.counter[STEPS_DONE] = 0  # the trace starts at step 0
         done = march(
-            modal, contact, laws, layout.hold(modal), state, tally, output, trace, work, force
+            modal,
+            contact,
+            laws,
+            layout.hold(modal),
+            fluid,
+            state,
+            tally,
+            output,
+            trace,
+            work,
+            force,
         )
         if done < drive.steps:
             raise IntegrationError(

@@ -15,6 +15,7 @@ from .modal_step import step_coefficients, step_matrices
 
 # Of a step. A run has about 1e6 steps: in all of them, a motion that grows by less does not double.
 LARGEST_GROWTH = 1.0e-6
+LARGEST_FEEDBACK = 0.02  # of a fluid-elastic force, by the motion of a step under it
 SAFE_OMEGA_STEP = 2.0  # rad, of the highest mode: no growth was seen below
 
 
@@ -47,11 +48,31 @@ def step_growth(model: ModalModel, dt: float, scheme: str) -> float:
     return largest
 
 
+def fluid_feedback(model: ModalModel, dt: float, scheme: str) -> float:
+    """Return the change of the fluid-elastic forces by the motion of a step under them, at most,
+    over themselves. A step takes them from a foretold motion, see kernels.fluid.
+    """
+    laws, step = model.fluid_laws, step_coefficients(scheme, model.omega, model.damping, dt)
+    drag = step.velocity_weights[0] * np.abs(laws.damping)
+    weight = np.sqrt(np.abs(laws.stiffness) + drag + np.abs(laws.lag_stiffness).sum(axis=1))
+    rows = model.fluid_shapes * weight
+    values = np.linalg.eigvalsh(rows.T @ (step.mode_compliance[:, None] * rows))
+    return float(values.max(initial=0.0))
+
+
 def require_stable_step(model: ModalModel, steps_per_second: float, scheme: str) -> None:
     """Raise IntegrationError where the step makes a motion grow by itself.
 
     The message has the steps per second that are enough.
     """
+    feedback = fluid_feedback(model, 1.0 / steps_per_second, scheme)
+    if feedback > LARGEST_FEEDBACK:
+        fastest = model.fluid_laws.velocity.max()
+        raise IntegrationError(
+            f"integration.steps_per_second = {steps_per_second:g}: in the flow of {fastest:.3g} m/s"
+            f" a step changes the fluid-elastic force by {feedback:.2g} of itself, at most"
+            f" {LARGEST_FEEDBACK:g}: {more_steps(steps_per_second * feedback / LARGEST_FEEDBACK)}"
+        )
     growth = step_growth(model, 1.0 / steps_per_second, scheme)
     if growth > LARGEST_GROWTH:
         highest = model.omega.max()

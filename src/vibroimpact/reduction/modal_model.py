@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from vibroimpact.contact.laws import ContactLaws, LocalLaws
+from vibroimpact.excitation.fluid_elastic import FluidLaws
 
 # Fields whose axes are checked: name -> axis names. An axis has the same length in all fields.
 AXES = {
@@ -35,6 +36,7 @@ AXES = {
     "initial_velocity": ("mode",),
     "initial_residual": (2,),
     "constant_force": ("mode",),
+    "fluid_shapes": ("mode", "fluid_row"),
 }
 NAMES = {
     "support_names": "support",
@@ -83,6 +85,10 @@ class ModalModel:
     element_shapes: (mode, element) along the element, relative where it has two ends.
     element_names, local_laws: their names and LocalLaws.
 
+    Fluid-elastic force of a flow:
+
+    fluid_shapes: (mode, fluid_row) m^-1/2, see excitation.fluid_rows; fluid_laws: their FluidLaws.
+
     Force, sensors, shape line and stresses:
 
     drive_shapes: (mode, force_channel) along the force.
@@ -128,6 +134,8 @@ class ModalModel:
     initial_velocity: np.ndarray = None  # type: ignore[assignment]
     initial_residual: np.ndarray = None  # type: ignore[assignment]
     constant_force: np.ndarray = None  # type: ignore[assignment]
+    fluid_shapes: np.ndarray = None  # type: ignore[assignment]
+    fluid_laws: FluidLaws = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
         """Fill in the neutral values and check all shapes and values."""
@@ -141,6 +149,8 @@ class ModalModel:
             "initial_velocity": np.zeros(modes),
             "initial_residual": np.zeros(2),
             "constant_force": np.zeros(modes),
+            "fluid_shapes": np.zeros((modes, 0)),
+            "fluid_laws": FluidLaws.neutral(),
         }
         for name, value in neutral.items():
             if getattr(self, name) is None:
@@ -240,6 +250,11 @@ class ModalModel:
             yield "omega must be ascending and not negative"
         if (self.damping < 0.0).any():
             yield "damping must not be negative"
+        if len(self.fluid_laws.velocity) != self.fluid_shapes.shape[1]:
+            yield (
+                f"fluid_laws are for {len(self.fluid_laws.velocity)} rows, fluid_shapes has"
+                f" {self.fluid_shapes.shape[1]}"
+            )
         points = len(self.support_of_point)
         if len(self.contact_laws.gap) != points:
             yield (

@@ -8,13 +8,18 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.contact.laws import ContactLaws, LocalLaws
+from vibroimpact.excitation.fluid_elastic import FluidLaws
 from vibroimpact.io.records import read_record, write_record
 
 from .modal_model import ModalModel
 from .model_variables import model_attributes
 
 # Fields of the model that are tables themselves: field -> class.
-LAWS: dict[str, type] = {"contact_laws": ContactLaws, "local_laws": LocalLaws}
+LAWS: dict[str, type] = {
+    "contact_laws": ContactLaws,
+    "local_laws": LocalLaws,
+    "fluid_laws": FluidLaws,
+}
 
 
 def write_model(

@@ -11,6 +11,7 @@ from vibroimpact.config.name_checks import TUBES
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.contact.local_elements import element_laws, element_rows, split_damping
 from vibroimpact.contact.supports import contact_laws, contact_preload
+from vibroimpact.excitation.fluid_rows import fluid_fields
 from vibroimpact.excitation.force_vectors import (
     constant_force_vector,
     force_vector,
@@ -64,8 +65,8 @@ def build_model(
 ) -> ModalModel:
     """Return the ModalModel of a configuration.
 
-    config: parts structure, supports, elements, masses, initial, damping, points, excitation, basis
-        and record.
+    config: parts structure, supports, elements, masses, initial, damping, points, excitation, flow,
+        basis and record.
     motion_only: leave out the shape line and the stresses.
     gauges: (named point, outward normal (3,)) of strain gauges on a tube. Each is one more sensor
         behind those of record.sensors, its shape a strain per unit amplitude.
@@ -101,6 +102,8 @@ def build_model(
         **_damping_and_element_fields(structure, omega, shapes, local_rows, config),
         **_contact_fields(structure, shapes, config),
         **_force_fields(structure, omega, shapes, config, point_rows),
+        "fluid_shapes": np.zeros((len(omega), 0)),
+        **(fluid_fields(structure, shapes, omega, config) if tube else {}),
         **initial_state(structure, shapes, len(full_frequencies), config.initial, point_rows),
         **_sensor_fields(structure, shapes, config, point_rows, gauges),
         **_line_fields(structure, shapes, config, tube and not motion_only),

@@ -1,1 +1,1 @@
-"""Reports as single pages: a discrepancy, the hidden-effect suite, the validation."""
+"""Words, tables and pages: of a study, of a measured tube, of a diagnosis."""

@@ -7,11 +7,8 @@ what was ruled out and why, and what would separate what is left.
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Iterable
 from pathlib import Path
-
-from jinja2 import Environment, StrictUndefined
 
 from vibroimpact.effects.effect import TESTS
 from vibroimpact.effects.places import place_in_words
@@ -20,7 +17,8 @@ from vibroimpact.verdict.content import Misfit, Verdict
 
 from .explanations import best_places, chance_text, explanations_of
 from .number_text import digits, percent
-from .page_style import STYLE
+from .page import embedded, rendered
+from .table import table_of
 from .verdict_words import (
     for_reading,
     judgement,
@@ -32,7 +30,6 @@ from .verdict_words import (
     withdrawn_sentence,
 )
 
-TEMPLATE = Path(__file__).with_suffix(".html")
 # The records of each misfit, what took no part first.
 SPLITS = {
     "holdout": "held out: not fitted",
@@ -52,7 +49,6 @@ SECTIONS = {
 }
 BAR_PX = 240  # of a probability of 1
 MOST_ROWS, MOST_REGIONS, MOST_MODES = 20, 10, 6
-WHOLE_PX = 1216  # of a figure as wide as the page: 7.6 in at 160 dpi
 LEVEL_ORDER = {"refuse": 0, "warn": 1, "not checked": 2, "pass": 3}
 # Meanings of the floor of the misfit.
 FREE_RUNS = "that between two free runs of one model"
@@ -74,39 +70,32 @@ def discrepancy_page(
     floor: meaning of the floor of the misfit, FREE_RUNS or NOISE.
     model: path of the completed model, model_updated.yaml beside the page where None.
     """
-    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
-    template = environment.from_string(TEMPLATE.read_text(encoding="utf-8"))
     tests = [
         f"{test}, {TESTS[test]}" if test in TESTS else str(test)
         for test in verdict.broken_invariances
     ]
-    shown = verdict.shown_effects()
-    return template.render(
-        misfit=[*_misfit_rows(verdict)],
-        p_before=_chance(verdict.p_global_before),
-        p_after=_chance(verdict.p_global_after),
-        style=STYLE,
+    return rendered(
+        "discrepancy_page.html",
         name=name,
         verdict=verdict,
         floor=floor,
         sentence=verdict_sentence(verdict),
         withdrawn=withdrawn_sentence(verdict),
-        effects=[*_effect_rows(verdict)],
-        families=any(effect.family for effect in shown),
-        laws=any(effect.law_fits for effect in shown),
-        completed=bool(shown),
+        completed=bool(verdict.shown_effects()),
         heading=HEADINGS.get(verdict.verdict, "The structure"),
-        separates=bool(verdict.next_measurement),
+        figures=_by_section(figures),
         probabilities=_probabilities(verdict),
-        regions=[_region_row(region) for region in verdict.regions[:MOST_REGIONS]],
+        p_before=_chance(verdict.p_global_before),
+        p_after=_chance(verdict.p_global_after),
+        regions=_regions(verdict),
         where_it_shows=where_it_shows(verdict),
         broken="; ".join(tests),
-        figures=_by_section(figures),
-        ranking=_ranking_rows(verdict),
-        scored=any(row.heldout_score is not None for row in verdict.ranking),
+        effects=_effects(verdict),
+        misfit=_misfit(verdict),
+        ranking=_ranking(verdict),
         untestable=", ".join(effects_in_words([name]) for name in verdict.not_testable),
         steps=next_steps(verdict, model or "model_updated.yaml"),
-        checks=sorted(verdict.checks, key=lambda row: LEVEL_ORDER[row.level]),
+        checks=_checks(verdict),
         seconds=digits(verdict.seconds),
         stages=_stages(verdict),
         provenance=[*_flat(verdict.provenance)],
@@ -119,31 +108,32 @@ def _chance(value):
 
 
 def _by_section(figures):
-    """Return {section: [{name, caption, data}]} of PNG files."""
-    sections: dict[str, list] = {
-        section: [] for section in ("sure", "where", "law", "what", "adding", "ruled_out")
-    }
+    """Return {section: [{name, caption, data, percent}]} of PNG files."""
+    sections: dict[str, list] = {section: [] for section in (*SECTIONS.values(), "adding")}
     for figure in embedded(figures):
         sections[SECTIONS.get(figure["name"], "adding")].append(figure)
     return sections
 
 
-def _ranking_rows(verdict):
+def _ranking(verdict):
+    """Return the Table of the explanations that were tried, each at its best place."""
     rows, known = [], set()
     for row in best_places([row.to_values() for row in verdict.ranking])[:MOST_ROWS]:
         ids = tuple(sorted(row["ids"]))
         rows.append(
             {
-                "ids": effects_in_words(row["ids"]),
-                "location": ", ".join(map(place_in_words, (row.get("location") or "").split("+"))),
+                "effects": effects_in_words(row["ids"]),
+                "where": ", ".join(map(place_in_words, (row.get("location") or "").split("+"))),
                 "probability": chance_text(row.get("probability")),
-                "score": digits(row["heldout_score"]),
-                "closed": percent(row["closed_fraction"]),
+                "score on held-out records": digits(row["heldout_score"]),
+                "excess closed there": percent(row["closed_fraction"]),
                 "judgement": judgement(verdict, row, ids not in known),
             }
         )
         known.add(ids)
-    return rows
+    scored = any(row.heldout_score is not None for row in verdict.ranking)
+    hidden = [] if explanations_of(verdict) else ["probability"]
+    return table_of(rows, hidden + ([] if scored else ["score on held-out records"]))
 
 
 def _probabilities(verdict):
@@ -158,60 +148,63 @@ def _probabilities(verdict):
     ]
 
 
+def _checks(verdict):
+    """Return the Table of the checks of the campaign, the gravest first."""
+    rows = sorted(verdict.checks, key=lambda row: LEVEL_ORDER[row.level])
+    return table_of(
+        {
+            "check": row.check,
+            "level": row.level,
+            "record": row.record or "",
+            "channel": row.channel or "",
+            "finding": row.message,
+        }
+        for row in rows
+    )
+
+
 def _stages(verdict):
-    if verdict.cost is None:
-        return []
-    return [
+    """Return the Table of the cost of the stages, without rows where it is not known."""
+    stages = {} if verdict.cost is None else verdict.cost.by_stage
+    return table_of(
         {
             "stage": stage,
-            "seconds": digits(cost.cpu_seconds),
+            "CPU time (s)": digits(cost.cpu_seconds),
             "simulations": cost.simulations,
         }
-        for stage, cost in verdict.cost.by_stage.items()
-    ]
+        for stage, cost in stages.items()
+    )
 
 
-def embedded(figures: Iterable[Path]) -> list[dict]:
-    """Return {name, caption, data, percent} of PNG files; data is the text of a data: address,
-    percent the share of the page's width with which their letters are as large as in others.
-
-    The caption is in a .txt file of the same name.
-    """
-    return [_embedded(file, file.read_bytes()) for file in map(Path, figures)]
-
-
-def _embedded(file, content):
-    """Return the row of embedded of a file and its content."""
-    pixels = int.from_bytes(content[16:20], "big")  # the width in the header of a PNG file
-    return {
-        "name": file.stem,
-        "caption": file.with_suffix(".txt").read_text(encoding="utf-8"),
-        "data": base64.b64encode(content).decode(),
-        "percent": min(100, round(100 * pixels / WHOLE_PX)),
-    }
-
-
-def _effect_rows(verdict):
-    for effect in verdict.shown_effects():
+def _effects(verdict):
+    """Return the Table of the effects that are shown, a row per parameter."""
+    rows, shown = [], verdict.shown_effects()
+    for effect in shown:
         known = EFFECTS.get(effect.id)
         head = {
             "effect": effects_in_words([effect.id]),
-            "explanation": known.explanation if known else "",
+            "what it does": known.explanation if known else "",
             "family": effect.family or "",
-            "law_fits": effect.law_fits or "",
-            "location": _where(effect.location or "all", known),
+            "law fits": effect.law_fits or "",
+            "where": _where(effect.location or "all", known),
         }
-        for name, value in [
-            (name, for_reading(row)) for name, row in effect.parameters.items()
-        ] or [("", None)]:
-            yield {
-                **head,
-                "parameter": name.replace("_", " "),
-                "value": digits(value["value"]) if value else "",
-                "interval": _interval(value) if value else "",
-                "unit": unit_text(value["unit"]).strip() or "-" if value else "",
-            }
+        values = [(name, for_reading(row)) for name, row in effect.parameters.items()]
+        for name, value in values or [("", None)]:
+            rows.append(
+                {
+                    **head,
+                    "parameter": name.replace("_", " "),
+                    "value": digits(value["value"]) if value else "",
+                    "90 % interval": _interval(value) if value else "",
+                    "unit": unit_text(value["unit"]).strip() or "-" if value else "",
+                }
+            )
             head = dict.fromkeys(head, "")
+    wanted = {
+        "family": any(effect.family for effect in shown),
+        "law fits": any(effect.law_fits for effect in shown),
+    }
+    return table_of(rows, [column for column, there in wanted.items() if not there])
 
 
 def _interval(value):
@@ -227,30 +220,41 @@ def _where(location, effect):
     return "all supports" if of_supports else place_in_words(location)
 
 
-def _misfit_rows(verdict):
+def _misfit(verdict):
+    """Return the Table of the misfit of the records, before and after an effect was added."""
+    rows, completed = [], bool(verdict.shown_effects())
+    before = "misfit before (dB)" if completed else "misfit (dB)"
     for split, words in SPLITS.items():
         misfit: Misfit | None = getattr(verdict.misfit, split)
-        if misfit is None or misfit.before_dB is None:
-            continue
-        yield {
-            "records": words,
-            "before": digits(misfit.before_dB),
-            "after": digits(misfit.after_dB),
-            "floor": digits(misfit.floor_dB),
-            "closed": percent(misfit.closed_fraction),
+        if misfit is not None and misfit.before_dB is not None:
+            rows.append(
+                {
+                    "records": words,
+                    before: digits(misfit.before_dB),
+                    "after (dB)": digits(misfit.after_dB),
+                    "floor (dB)": digits(misfit.floor_dB),
+                    "excess closed": percent(misfit.closed_fraction),
+                }
+            )
+    return table_of(rows, () if completed else ("after (dB)", "excess closed"))
+
+
+def _regions(verdict):
+    """Return the Table of the bands that differ most."""
+    rows = [
+        {
+            "band (Hz)": " to ".join(digits(edge) for edge in region.band_Hz),
+            "channel": region.channel,
+            f"load ({verdict.load_unit} RMS)": digits(region.load_rms_N),
+            "gap (mm)": digits(region.gap_m * 1e3) if region.gap_m is not None else "-",
+            "measured / simulated (dB)": _signed(region.discrepancy_dB),
+            "z": _signed(region.z),
+            "nearest modes (Hz)": _modes(region.nearest_modes_Hz or ()),
         }
-
-
-def _region_row(region):
-    return {
-        "band": " to ".join(digits(edge) for edge in region.band_Hz),
-        "channel": region.channel,
-        "load": digits(region.load_rms_N),
-        "gap": digits(region.gap_m * 1e3) if region.gap_m is not None else "-",
-        "discrepancy": _signed(region.discrepancy_dB),
-        "z": _signed(region.z),
-        "modes": _modes(region.nearest_modes_Hz or ()),
-    }
+        for region in verdict.regions[:MOST_REGIONS]
+    ]
+    known = rows and rows[0]["nearest modes (Hz)"]
+    return table_of(rows, () if known else ("nearest modes (Hz)",))
 
 
 def _signed(value):

@@ -10,8 +10,8 @@ from .equivalent_answer import Answer, answers, unmoved
 from .number_text import digits
 from .study_content import StudyContent, provenance
 from .study_statistics import StudyStatistics
-from .study_tables import Table
 from .study_words import headline
+from .table import Table
 
 # Column of the level: (word, unit, units per SI unit).
 LEVELS = {"load_rms_N": ("Load", "N", 1.0), "response_rms_m": ("Response", "mm", 1e3)}

@@ -1,4 +1,4 @@
-"""What the page and the summary of a study say: gathered once, so that both say the same."""
+"""The content of the page of a study."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from typing import Any
 import yaml
 
 import vibroimpact
+from vibroimpact.wear.life import WearRow
 
 from .equivalent_answer import ALL_SUPPORTS, Answer
 from .number_text import digits
 from .study_statistics import StudyStatistics
 from .study_tables import (
-    Table,
     answer_table,
     contact_table,
     element_table,
@@ -32,6 +32,8 @@ from .study_words import (
     load_unit,
     run_sentence,
 )
+from .table import Table
+from .wear_life import wear_sentences, wear_table
 
 MOST_LOADS = 8  # of a table of statistics, per gap
 
@@ -103,6 +105,7 @@ class StudyContent:
     limits: {residual: largest accepted value}.
     unmoved: (group of supports, direction) that the force does not move.
     warnings: sentences on what makes numbers wrong or doubtful as they stand.
+    worn: WearRows of a study with a wear life.
     """
 
     config: Any
@@ -112,6 +115,7 @@ class StudyContent:
     provenance: Provenance
     unmoved: Sequence[tuple[str, str]] = ()
     warnings: Sequence[str] = ()
+    worn: Sequence[WearRow] = ()
 
     kind = "study"
     scatter = "seeds"
@@ -146,15 +150,18 @@ class StudyContent:
 
     def contact(self) -> list[str]:
         """Return contact, wear and stress in sentences."""
-        return contact_sentences(self.config, self.statistics)
+        return [
+            *contact_sentences(self.config, self.statistics),
+            *wear_sentences(self.worn, self.config, self.unit),
+        ]
 
     def at_gap(self, gap_m: float) -> str:
         """Return " at a gap of ... mm", empty where the gap of a case means nothing."""
         return "" if has_own_gaps(self.config) else f" at a gap of {digits(1e3 * gap_m)} mm"
 
-    def loads_in_tables(self, most: int = MOST_LOADS) -> list[float]:
+    def loads_in_tables(self) -> list[float]:
         """Return the loads that tables of statistics list."""
-        return spread_evenly(self.statistics.loads, most)
+        return spread_evenly(self.statistics.loads, MOST_LOADS)
 
     def answer_tables(self) -> list[tuple[float, Table]]:
         """Return (gap in m, table of the recommended values) of each gap."""
@@ -173,14 +180,22 @@ class StudyContent:
         """Return why values are not resolved, or differ."""
         return reason_table(self.answers, self.statistics, self.several, self.unit)
 
-    def contact_tables(self, most: int = MOST_LOADS) -> list[tuple[float, Table]]:
+    def contact_tables(self) -> list[tuple[float, Table]]:
         """Return (gap in m, contact and wear by load and support) of each gap."""
         if not self.statistics.supports:
             return []
-        loads = self.loads_in_tables(most)
+        loads = self.loads_in_tables()
         return [
             (gap, contact_table(self.statistics, gap, loads, self.unit))
             for gap in self.statistics.gaps
+        ]
+
+    def wear_tables(self) -> list[tuple[float, Table]]:
+        """Return (gap in m, wear life by load, support and land) of each gap."""
+        loads = self.loads_in_tables() if self.worn else []
+        return [
+            (gap, wear_table(self.worn, gap, loads, self.unit))
+            for gap in dict.fromkeys(row.gap_m for row in self.worn)
         ]
 
     def element_tables(self) -> list[tuple[float, Table]]:
@@ -193,9 +208,9 @@ class StudyContent:
             for gap in self.statistics.gaps
         ]
 
-    def stress(self, most: int = MOST_LOADS) -> Table:
+    def stress(self) -> Table:
         """Return the stress by gap and load."""
-        return stress_table(self.statistics, self.loads_in_tables(most), self.unit)
+        return stress_table(self.statistics, self.loads_in_tables(), self.unit)
 
     def energy(self) -> Table:
         """Return the worst energy residuals."""

@@ -11,15 +11,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from jinja2 import Environment, StrictUndefined
-
 from .captions import CATEGORIES, Caption
 from .number_text import digits
-from .page_style import STUDY_STYLE
+from .page import rendered
 from .study_content import StudyContent
 from .study_words import answers_by_place
 
-TEMPLATE = Path(__file__).with_suffix(".html")
 SCRIPT = Path(__file__).with_suffix(".js")
 
 
@@ -55,11 +52,9 @@ def study_page(content: StudyContent, plots: PagePlots, pictures: Sequence[Pictu
 
     pictures: in their order within each category.
     """
-    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
-    template = environment.from_string(TEMPLATE.read_text(encoding="utf-8"))
     chosen = _useful_controls(plots)
-    return template.render(
-        style=STUDY_STYLE,
+    return rendered(
+        "study_page.html",
         content=content,
         digits=digits,
         sections=plots.sections,

@@ -1,4 +1,4 @@
-"""The tables of a study's page and summary, as texts in the units that a reader expects."""
+"""The tables of a study's page, as texts in the units that a reader expects."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from itertools import groupby
-from typing import NamedTuple
 
 from .equivalent_answer import Answer, Value
 from .number_text import digits
 from .study_statistics import RESIDUALS, SEVERAL, Spread, StudyStatistics
 from .study_words import stiffness_unit
+from .table import Table
 
 AGREEMENTS = {
     "agree": "agree",
@@ -20,9 +20,7 @@ AGREEMENTS = {
     "unresolved": "not resolved",
 }
 PARTIAL = {"k": "two of three", "c": "one of two"}
-NUMBER = re.compile(r"-|(< )?-?\d[-+.e\d]*( to -?\d[-+.e\d]*)?")  # a number, an interval or none
 NUMBERS = re.compile(r"[-+]?\d[-+.e\d]*( (?=[kMG]?N))?[kMG]?")  # with the prefix of a unit
-LONG_CELL = 30  # characters of a cell that holds a sentence
 RESIDUAL_WORDS = {
     "energy_residual": "with the work of the contact forces",
     "potential_energy_residual": "with the contact's potential energy",
@@ -42,26 +40,6 @@ ELEMENT_COLUMNS = {
     "slip_power": ("slip power (W)", 1.0),
     "slip_work": ("slip work (J)", 1.0),
 }
-
-
-class Table(NamedTuple):
-    """A table of texts.
-
-    columns: their headings, with units.
-    rows: one tuple of cells per row.
-    """
-
-    columns: tuple[str, ...]
-    rows: Sequence[tuple[str, ...]]
-
-    def numeric(self) -> list[bool]:
-        """Return for each column whether it holds numbers, which are aligned to the right."""
-        cells = [[row[at] for row in self.rows] for at in range(len(self.columns))]
-        return [bool(column) and all(map(NUMBER.fullmatch, column)) for column in cells]
-
-    def wordy(self) -> bool:
-        """Whether some cells hold sentences, so that a narrow screen shows a row as a block."""
-        return any(len(cell) > LONG_CELL for row in self.rows for cell in row)
 
 
 def answer_table(answers: Sequence[Answer], several: bool, unit: str) -> Table:

@@ -6,13 +6,15 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations, count
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from vibroimpact.config.idle_keys import idle_keys
 from vibroimpact.config.problems import shown
 from vibroimpact.config.schema import Basis, Config
+from vibroimpact.excitation.fluid_elastic import outside_fit
+from vibroimpact.geometry.sections import outer_width
 from vibroimpact.identify.guards import FEWEST_AVERAGES, few_averages
 from vibroimpact.integration.contact_convergence import IntegrationError, checked_contraction
 from vibroimpact.integration.step_stability import require_stable_step
@@ -79,6 +81,7 @@ def check_model(config: Config) -> ModelChecks:
         return ModelChecks((*problems, str(error)))
     condensed = getattr(structure, "condensed", None)
     told = [] if condensed is None else [f"structure.mass: {condensed.told()}"]
+    told += extrapolated(config, model)
     warnings = (*told, *short_record(config), *mesh_warnings(accuracy))
     return ModelChecks(tuple(problems), warnings)
 
@@ -155,6 +158,19 @@ def unseen(config: Config, model: ModalModel) -> Iterator[str]:
                 f"identification.{place} = '{other}' moves as the reference '{one}' does: give a"
                 " point elsewhere, or leave it out"
             )
+
+
+def extrapolated(config: Config, model: ModalModel) -> Iterator[str]:
+    """Yield that the fluid-elastic force is not known at the lowest mode that it moves."""
+    moved = np.any(model.fluid_shapes != 0.0, axis=1) & (model.omega > 0.0)
+    flow: Any = config.flow
+    if not moved.any():
+        return
+    lowest = float(model.omega[moved].min()) / (2.0 * math.pi)
+    width = outer_width(cast(Any, config.structure).section)
+    text = outside_fit(flow.coupling, flow.acting_m_per_s, lowest, width)
+    if text:
+        yield text
 
 
 def short_record(config: Config) -> Iterator[str]:

@@ -49,6 +49,12 @@ VARIABLES: dict[str, tuple[tuple, str, str, str]] = {
         "largest radial velocity at the begin of a contact",
     ),
     "wear_work_rate": (("support",), "f8", "W", "normal force times sliding speed, mean over time"),
+    "land_work_rate": (
+        ("support", "land"),
+        "f8",
+        "W",
+        "wear work rate at each land of a support, in the order of its profile",
+    ),
     "force_displacement": (
         ("contact_point", "direction"),
         "f8",
@@ -96,6 +102,7 @@ VARIABLES: dict[str, tuple[tuple, str, str, str]] = {
         "J",
         "energy that contacts and elements took beyond what their springs hold",
     ),
+    "fluid_power": ((), "f8", "W", "mean power that the fluid-elastic force gives to the tube"),
     "element_displacement_square": (
         ("element",),
         "f8",

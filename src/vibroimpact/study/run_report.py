@@ -25,7 +25,7 @@ NO_WORD = (
 )
 LAST_LINES, MOST_WARNINGS = 6, 5
 STATISTICS = "statistics.csv"
-MENTIONED = ("index.html", "summary.pdf", "equivalent.csv", "consistency.csv", STATISTICS)
+MENTIONED = ("index.html", "equivalent.csv", "consistency.csv", STATISTICS)
 CASE_KEYS = ("gap_m", "load_rms_N", "seed", "group", "direction")
 
 

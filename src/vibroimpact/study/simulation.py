@@ -86,7 +86,7 @@ def simulate_cases(
                     schedule,
                     gap=gap,
                     imperfection=offset,
-                    drive=_drive(batch, forces, stopwatch),
+                    drive=drive_of(batch, forces, stopwatch),
                     receive=(
                         None
                         if put is None
@@ -136,9 +136,13 @@ def imperfection(config: Any, model: ModalModel, case: Case) -> np.ndarray:
     return draw * (config.integration.imperfection * case.gap_m)
 
 
-def _drive(
+def drive_of(
     batch: list[Case], forces: dict[int, list[ForceStream]], stopwatch: Stopwatch
 ) -> Callable:
+    """Return the Drive of a batch: the forces of each case's seed, {seed: its channels}, times its
+    load.
+    """
+
     def drive(first: int, count: int) -> np.ndarray:
         with stopwatch("force"):
             unit = {
@@ -196,6 +200,9 @@ def record_dataset(
     tallies = statistics(lanes, lane, schedule.steps_per_second)
     over_limit = tallies["stress_peak"].max(initial=0.0) > config.record.stress_limit_Pa
     values = series | tallies | energy_balance(lanes, lane, model.conservative)
+    if len(model.fluid_laws.velocity):
+        record_s = lanes.steps / schedule.steps_per_second
+        values["fluid_power"] = lanes.tally["fluid_work"][0, lane] / record_s
     values["stress_flag"] = np.asarray(over_limit, np.int8)
     return describe(values, coordinates, case_attributes(config, schedule, case))
 

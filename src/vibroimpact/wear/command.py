@@ -13,9 +13,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from vibroimpact.config.wear import Wear
+
     from .life import WearRow
 
-HEADER = ("gap", "load", "support", "work rate", "depth", "of the wall", "limit after")
+HEADER = ("gap", "load", "support", "land", "work rate", "depth", "of the wall", "limit after")
+KEYS = {  # argument -> key of the section `wear`
+    "coefficient": "coefficient_m2_per_N",
+    "slowing": "slowing",
+    "years": "years",
+    "duty": "duty",
+    "limit": "wall_limit",
+    "tilt": "tilt_deg",
+    "tube_share": "tube_share",
+    "gap_grows": "gap_grows",
+}
 FOREVER = 1e4  # years, above which the time to the limit is not told
 
 
@@ -26,16 +38,29 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--coefficient",
         type=float,
         nargs="+",
-        required=True,
         metavar="K",
-        help="wear coefficients in m²/N, such as 1e-15 2e-14: they differ by 100 between alloys",
-    )
-    parser.add_argument("--years", type=float, default=40.0, help="time in service (default: 40)")
-    parser.add_argument(
-        "--duty", type=float, default=1.0, help="share of it under the load (default: 1)"
+        help="wear coefficients in m²/N, such as 1e-15 2e-14: they differ by 100 between alloys;"
+        " by default the published ones of the support's shape",
     )
     parser.add_argument(
-        "--limit", type=float, default=0.4, help="share of the wall that may be worn (default: 0.4)"
+        "--slowing", action="store_true", default=None, help="with the slowing law EDF_MZ"
+    )
+    parser.add_argument("--years", type=float, help="time in service (default: 40)")
+    parser.add_argument("--duty", type=float, help="share of it under the load (default: 1)")
+    parser.add_argument(
+        "--limit", type=float, help="share of the wall that may be worn (default: 0.4)"
+    )
+    parser.add_argument(
+        "--tilt", type=float, metavar="DEG", help="of flat lands on the tube (default: 0)"
+    )
+    parser.add_argument(
+        "--tube-share", type=float, help="share of the worn volume that is the tube's (default: 1)"
+    )
+    parser.add_argument(
+        "--gap-grows",
+        action="store_true",
+        default=None,
+        help="the gap grows by the depth: the work rate is that of the study at that gap",
     )
     parser.add_argument("--csv", metavar="FILE", help="write the rows of all loads to a CSV file")
     parser.set_defaults(command=run)
@@ -46,49 +71,58 @@ def run(options: argparse.Namespace) -> int:
     from vibroimpact.config.problems import ConfigError
     from vibroimpact.io.records import RecordError, write_table
 
-    from .life import NoWear, Service, wear_life
+    from .life import NoWear, wear_life
 
     try:
-        _require(options)
-        service = Service(tuple(options.coefficient), options.years, options.duty, options.limit)
         named = Path("results") / options.study
         folder = named if (named / "records").is_dir() else Path(options.study)
-        rows = wear_life(folder, service)
+        wear = _wear(options, folder / "config.yaml")
+        rows = wear_life(folder, wear)
         if options.csv:
             write_table([asdict(row) for row in rows], options.csv)
     except (ConfigError, NoWear, RecordError) as error:
         print(error, file=sys.stderr)
         return 1
-    print(as_text(rows, service.years))
+    print(as_text(rows, wear.years))
     return 0
 
 
-def _require(options: argparse.Namespace) -> None:
-    """Raise NoWear for numbers that no wear has."""
+def _wear(options: argparse.Namespace, configuration: Path) -> Wear:
+    """Return the section `wear` of a configuration, with the arguments in place of its keys.
+
+    Raises NoWear for a value out of range, ConfigError.
+    """
+    from pydantic import ValidationError
+
+    from vibroimpact.config.reading import load_config
+    from vibroimpact.config.wear import Wear
+
     from .life import NoWear
 
-    for value in options.coefficient:
-        if not 0.0 < value < 1e-6:
-            raise NoWear(f"--coefficient {value:g} must be between 0 and 1e-6 m²/N")
-    for name, highest in (("years", 1e4), ("duty", 1.0), ("limit", 1.0)):
-        value = getattr(options, name)
-        if not 0.0 < value <= highest:
-            raise NoWear(f"--{name} {value:g} must be above 0 and at most {highest:g}")
+    own = load_config(configuration).wear if configuration.is_file() else None
+    given = {key: getattr(options, name) for name, key in KEYS.items()}
+    keys = {} if own is None else own.model_dump()
+    keys |= {key: value for key, value in given.items() if value is not None}
+    try:
+        return Wear(**keys)
+    except ValidationError as error:
+        flags = {key: name.replace("_", "-") for name, key in KEYS.items()}
+        raise NoWear(
+            "\n".join(
+                f"--{flags[str(problem['loc'][0])]} {problem['input']:g} {problem['msg']}"
+                for problem in error.errors()
+            )
+        ) from error
 
 
 def as_text(rows: Sequence[WearRow], years: float) -> str:
-    """Return the support that wears most at each gap and load, as text."""
-    worst: dict[tuple[float, float], list[WearRow]] = {}
-    for row in rows:
-        own = worst.setdefault((row.gap_m, row.load_rms_N), [])
-        if not own or row.work_rate_W > own[0].work_rate_W:
-            worst[row.gap_m, row.load_rms_N] = [row]
-        elif row.support == own[0].support:
-            own.append(row)
-    cells = [HEADER, *map(_cells, worst.values())]
+    """Return the land that wears deepest at each gap and load, as text."""
+    from .life import deepest
+
+    cells = [HEADER, *map(_cells, deepest(rows))]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     lines = ["  ".join(map(str.ljust, row, widths)).rstrip() for row in cells]
-    return "\n".join([f"The support that wears most, after {years:g} years:", *lines])
+    return "\n".join([f"The land that wears deepest, after {years:g} years:", *lines])
 
 
 def _cells(rows: Sequence[WearRow]) -> tuple[str, ...]:
@@ -100,6 +134,7 @@ def _cells(rows: Sequence[WearRow]) -> tuple[str, ...]:
         f"{1e3 * first.gap_m:.4g} mm",
         f"{first.load_rms_N:.4g} N",
         first.support,
+        str(first.land),
         f"{1e3 * first.work_rate_W:.3g} mW",
         _span(sorted(row.depth_m for row in rows), 1e6) + " µm",
         _span(sorted(row.wall_share for row in rows), 100.0) + " %",

@@ -34,7 +34,7 @@ def text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
 
 def _elements(spring: PointSpring, unit: UnitSystem, node: int, element: int) -> list[str]:
     """Return the lines of one point, whose elements count from `element`."""
-    name, axes, lines = plain_name(spring.name).upper(), global_axes(spring), []
+    name, axes, lines = plain_name(spring.name).upper(), global_axes(spring.axes), []
     oriented = ""
     if axes is None:
         axes, oriented = (0, 1), f", ORIENTATION=AXES_{name}"

@@ -36,7 +36,7 @@ def text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
         place = ", ".join(f"{unit.length * value + 0.0:.9g}" for value in spring.position)
         places.append(f"#   {name}: ({place})")
         discrete += _terms(spring, unit, name)
-        if global_axes(spring) is None:
+        if global_axes(spring.axes) is None:
             values = ", ".join(f"{value + 0.0:.12g}" for value in spring.axes.ravel())
             orientation.append(f"        _F(GROUP_MA='{name}', CARA='VECT_X_Y', VALE=({values})),")
     lines = [*head(springs, unit, "#", USE), *places, "SUPPORTS = AFFE_CARA_ELEM("]
@@ -48,7 +48,7 @@ def text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
 
 def _terms(spring: PointSpring, unit: UnitSystem, name: str) -> list[str]:
     """Return the _F terms of one point: the stiffness, and the damping where there is one."""
-    axes, frame = global_axes(spring), "GLOBAL"
+    axes, frame = global_axes(spring.axes), "GLOBAL"
     if axes is None:
         axes, frame = (0, 1), "LOCAL"
     lines = []

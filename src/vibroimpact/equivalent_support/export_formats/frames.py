@@ -6,35 +6,41 @@ import textwrap
 
 import numpy as np
 
-from ..springs import PointSpring, SpringSet
+from ..springs import SpringSet
 from .unit_system import UnitSystem
 
 WIDTH = 66  # of comment lines: an input line of Nastran holds 72 characters of a comment
 AXIS_TOLERANCE = 1.0e-9  # of a unit vector's component
 
 
-def head(springs: SpringSet, unit: UnitSystem, mark: str, extra: str = "") -> list[str]:
+def head(
+    content: SpringSet,
+    unit: UnitSystem,
+    mark: str,
+    extra: str = "",
+    title: str = "Springs and dampers to ground",
+) -> list[str]:
     """Return the comment lines that begin a file.
 
-    mark: what begins a comment. extra: a sentence on how to use the file.
+    mark: what begins a comment. extra: a sentence on how to use the file. title: of the content.
     """
     sentences = [
-        *(f"WARNING: {sentence}." for sentence in springs.warnings),
-        f"Springs and dampers to ground, written by vibroimpact. Units: {unit.name}.",
-        *springs.notes,
-        *(f"LEFT OUT: {sentence}." for sentence in springs.left_out),
+        *(f"WARNING: {sentence}." for sentence in content.warnings),
+        f"{title}, written by vibroimpact. Units: {unit.name}.",
+        *content.notes,
+        *(f"LEFT OUT: {sentence}." for sentence in content.left_out),
         *filter(None, [extra]),
     ]
     lines = [line for sentence in sentences for line in textwrap.wrap(sentence, WIDTH)]
     return [f"{mark} {line}" for line in lines]
 
 
-def global_axes(spring: PointSpring) -> tuple[int, int] | None:
-    """Return the global axes (0 to 2) that the two directions of a spring are, up to the sign.
+def global_axes(directions: np.ndarray) -> tuple[int, int] | None:
+    """Return the global axes (0 to 2) that two directions (2, 3) are, up to the sign.
 
     None where they are not along the axes.
     """
-    axes = np.abs(spring.axes)
+    axes = np.abs(directions)
     first, second = (int(np.argmax(axis)) for axis in axes)
     along = axes[0, first] > 1.0 - AXIS_TOLERANCE and axes[1, second] > 1.0 - AXIS_TOLERANCE
     return (first, second) if along else None

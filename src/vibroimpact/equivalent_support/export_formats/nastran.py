@@ -32,7 +32,7 @@ def text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
 def _cards(spring: PointSpring, unit: UnitSystem, number: int) -> list[str]:
     """Return the lines of one point."""
     place = unit.length * spring.position
-    axes, system, lines = global_axes(spring), 0, []
+    axes, system, lines = global_axes(spring.axes), 0, []
     if axes is None:
         axes, system = (0, 1), number
         along = np.cross(spring.axes[0], spring.axes[1])

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from vibroimpact.figures.sheet import WIDTH_IN, Sheet
-from vibroimpact.figures.style import BLACK, label_of, shown
+from vibroimpact.figures.plot import Axis, Bars, Panel, Plot, Series
+from vibroimpact.figures.sheet import WIDTH_IN
 
-from .states import AS_GIVEN, COLOURS, bars, level_in_words, name_rows, percent, shown_states
+from .states import AS_GIVEN, COLOURS, level_in_words, percent, shown_states
 
 MOST_CHANNELS = 14
 LARGEST = 2.0  # error that is drawn to scale
@@ -28,66 +28,67 @@ NONE_HELD = (
 )
 
 
-def free_sensor_figure(evidence: xr.Dataset) -> Sheet:
-    """Return the Sheet of the waveform of a sensor that was left free, and the errors of all."""
+def free_sensor_figure(evidence: xr.Dataset) -> Plot:
+    """Return the Plot of the waveform of a sensor that was left free, and the errors of all."""
     states, error = shown_states(evidence), evidence["free_error"].values[:, 0]
-    told = int(evidence["waveform_channel"].values)
-    channels = _chosen(error, told)
+    free = int(evidence["waveform_channel"].values)
+    channels = _chosen(error, free)
     names = evidence["channel_name"].values
     left = int(np.isfinite(error[0]).sum()) - len(channels)
     words = f" {left} sensors that are predicted better are left out." if left else ""
     level = level_in_words(evidence, int(evidence["waveform_stretch"].values))
-    errors = " → ".join(percent(error[state, told]) for state, _ in states)
-    sheet = Sheet(
+    errors = " → ".join(percent(error[state, free]) for state, _ in states)
+    caption = NONE_HELD if evidence.attrs.get("held") == "nothing" else CAPTION
+    return Plot(
         "diagnosis_free_sensor",
-        f"{names[told]}, left free, is predicted: error {errors}",
-        (NONE_HELD if evidence.attrs.get("held") == "nothing" else CAPTION).format(left_out=words),
+        f"{names[free]}, left free, is predicted: error {errors}",
+        caption.format(left_out=words),
+        {
+            "waveform": _waveform(evidence, states, f"{names[free]}, {level}"),
+            "errors": _errors(evidence, states, channels),
+        },
         [["waveform"], ["errors"]],
-        size=(WIDTH_IN, 3.8 + 0.24 * len(channels)),
-        height_ratios=(2.3, 0.7 + 0.24 * len(channels)),
+        (WIDTH_IN, 3.8 + 0.24 * len(channels)),
+        heights=(2.3, 0.7 + 0.24 * len(channels)),
     )
-    _waveform(sheet, sheet.axes["waveform"], evidence, states)
-    sheet.axes["waveform"].set_title(f"{names[told]}, {level}")
-    _errors(sheet, sheet.axes["errors"], evidence, states, channels)
-    return sheet
 
 
-def _chosen(error, told):
-    """Return the channels that are drawn, the telling one first, then by their error before."""
+def _chosen(error, free):
+    """Return the channels that are drawn, the free one first, then by their error before."""
     known = np.flatnonzero(np.isfinite(error[0]))
-    order = sorted(known.tolist(), key=lambda channel: (channel != told, -error[-1, channel]))
+    order = sorted(known.tolist(), key=lambda channel: (channel != free, -error[-1, channel]))
     return order[:MOST_CHANNELS]
 
 
-def _waveform(sheet, axes, evidence, states):
-    """Draw what was measured, and what each state predicts."""
-    unit = evidence["waveform"].attrs["units"]
-    column = COLUMNS[unit]
+def _waveform(evidence, states, title):
+    """Return the Panel of the measurement, and of what each state predicts."""
+    column = COLUMNS[evidence["waveform"].attrs["units"]]
     series, time = evidence["waveform"].values, evidence["moment_time"].values
-    rows = [(0, "measured", {"color": BLACK, "linewidth": 2.2, "zorder": 1})]
+    items = [Series("measured", time, series[0], label="measured", width=2.2, order=1)]
     for state, name in states:
-        style = {"color": COLOURS[name], "linewidth": 1.2, "zorder": 3 + state}
-        rows.append((1 + state, name, style | {"linestyle": "--" if name == AS_GIVEN else "-"}))
-    for row, name, style in rows:
-        sheet.line(axes, ("time_s", time), (column, series[row]), name, label=name, **style)
-    largest = 1.35 * float(np.abs(shown(column, series[0])).max())
-    axes.set_xlim(time[0], time[-1])
-    axes.set_ylim(-largest, largest)
-    axes.set_xlabel("Time in the record (s)")
-    axes.legend(loc="upper right", ncols=3)
+        look = {"colour": COLOURS[name], "width": 1.2, "order": 3 + state, "label": name}
+        look["line"] = "--" if name == AS_GIVEN else "-"
+        items.append(Series(name, time, series[1 + state], **look))
+    largest = 1.35 * float(np.abs(series[0]).max())
+    moments = Axis("time_s", False, time[0], time[-1], "Time in the record (s)")
+    motion = Axis(column, False, -largest, largest)
+    return Panel(moments, motion, items, title, legend="upper right", legend_columns=3)
 
 
-def _errors(sheet, axes, evidence, states, channels):
-    """Draw a bar per channel and state."""
+def _errors(evidence, states, channels):
+    """Return the Panel of a bar per channel and state."""
     error, names = evidence["free_error"].values[:, 0], evidence["channel_name"].values
-    height = 0.8 / len(states)
+    thickness, items = 0.8 / len(states), []
     for position, (state, name) in enumerate(states):
         values = error[state, channels]
-        place = sheet.record(axes, name, channel=names[channels], free_error=values)
-        rows = np.arange(len(channels)) + (position - 0.5 * (len(states) - 1)) * height
-        drawn = 100.0 * np.minimum(np.nan_to_num(values), LARGEST)
-        style = {"color": COLOURS[name], "label": name}
-        bars(axes, rows, drawn, [*map(percent, values)], place, height, **style)
-    name_rows(axes, names[channels])
-    axes.margins(x=0.12)
-    axes.set_xlabel(label_of("free_error"))
+        at = np.arange(len(channels)) + (position - 0.5 * (len(states) - 1)) * thickness
+        tags = {"channel": names[channels], "free_error": values}
+        look = {"colour": COLOURS[name], "label": name, "thickness": thickness}
+        drawn, texts = np.minimum(np.nan_to_num(values), LARGEST), [*map(percent, values)]
+        items.append(Bars(name, at, drawn, tags, texts=texts, **look))
+    highest = 1.12 * max(float(np.max(item.values)) for item in items)
+    return Panel(
+        Axis("free_error", False, 0.0, highest),
+        Axis("channel", names=names[channels].tolist()),
+        items,
+    )

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
-from matplotlib.colors import LogNorm
 
-from vibroimpact.figures.sheet import WIDTH_IN, Sheet
-from vibroimpact.figures.style import label_of, tidy_log_axis
+from vibroimpact.figures.plot import Axis, ColourBar, Map, Panel, Plot
+from vibroimpact.figures.sheet import WIDTH_IN
 
-from .states import level_in_words, name_rows, shown_states
+from .states import level_in_words, shown_states
 
 MOST_LEVELS, MOST_CHANNELS = 3, 12
 RANGE = 50.0  # between the largest colour and the least
@@ -22,40 +21,32 @@ CAPTION = (
 )
 
 
-def holding_figure(evidence: xr.Dataset) -> Sheet:
-    """Return the Sheet of maps of the holding force, a column per level and a row per state."""
+def holding_figure(evidence: xr.Dataset) -> Plot:
+    """Return the Plot of maps of the holding force, a column per level and a row per state."""
     levels, channels = chosen_levels(evidence), chosen_channels(evidence)
     states = shown_states(evidence)
-    mosaic = [[f"{name}, {level}" for level in levels] for _, name in states]
+    rows = [[f"{name}, {level}" for level in levels] for _, name in states]
+    panels: dict[str, Panel] = {}
+    bars = []
+    for column, level in enumerate(levels):
+        own = [row[column] for row in rows]
+        maps = _maps(evidence, level, channels, states)
+        panels |= dict(zip(own, maps, strict=True))
+        (item,) = maps[0].items
+        bars.append(ColourBar("holding_force_N", item.low, item.high, log=True, panels=own))
     left = evidence.sizes["channel"] - len(channels)
     words = f" {left} channels with less of it are left out." if left else ""
     height = 0.75 + max(0.21 * len(channels), 1.0)
-    sheet = Sheet(
+    return Plot(
         "diagnosis_holding",
         _title(evidence, states),
         CAPTION.format(left_out=words),
-        mosaic,
-        size=(WIDTH_IN, 1.5 + height * len(states)),
-        sharex=True,
-        sharey=True,
+        panels,
+        rows,
+        (WIDTH_IN, 1.5 + height * len(states)),
+        share="xy",
+        colour_bars=bars,
     )
-    for column, level in enumerate(levels):
-        values = evidence["holding_force"].values[:, level][:, channels].astype(float)
-        shown = values[[state for state, _ in states]]
-        largest = max(float(shown.max()), np.finfo(float).tiny)
-        norm = LogNorm(largest / RANGE, largest)
-        panels = [sheet.axes[row[column]] for row in mosaic]
-        for axes, (state, name) in zip(panels, states, strict=True):
-            mesh = _map(sheet, axes, evidence, (level, channels, state), norm)
-            if column == 0:
-                axes.set_ylabel(name)
-        told = level_in_words(evidence, level)
-        panels[0].set_title(told.replace(", ", "\n", 1), fontsize=8.5)
-        panels[-1].set_xlabel(label_of("frequency_Hz"))
-        bar = sheet.colour_bar(mesh, panels, "holding_force_N", location="bottom", aspect=14)
-        tidy_log_axis(bar.ax.xaxis)
-        bar.ax.tick_params(labelsize=8)
-    return sheet
 
 
 def chosen_levels(evidence: xr.Dataset) -> list[int]:
@@ -100,29 +91,18 @@ def _title(evidence, states):
     return f"Holding force: {told} N per sensor, {left} at {name}, {low:.0f}–{high:.0f} Hz"
 
 
-def _map(sheet, axes, evidence, chosen, norm):
-    """Draw the holding force of (stretch, channels, state) and return the mesh."""
-    level, channels, state = chosen
-    values = evidence["holding_force"].values[state, level, channels].astype(float)
+def _maps(evidence, level, channels, states):
+    """Return the Panel of a stretch for each state, with one scale of colours."""
+    values = evidence["holding_force"].values[:, level][:, channels].astype(float)
     low, high = evidence["band_low"].values, evidence["band_high"].values
-    names = evidence["channel_name"].values[channels]
-    bands = len(low)
-    place = sheet.record(
-        axes,
-        str(evidence["record_name"].values[level]),
-        channel=np.repeat(names, bands),
-        frequency_Hz=np.tile(np.sqrt(low * high), len(names)),
-        holding_force_N=values.ravel(),
-    )
-    mesh = axes.pcolormesh(
-        np.r_[low, high[-1]],
-        np.arange(len(names) + 1) - 0.5,
-        np.maximum(values, norm.vmin),
-        norm=norm,
-        rasterized=True,
-        gid=place,
-    )
-    axes.set_xscale("log")
-    name_rows(axes, names)
-    axes.grid(False)
-    return mesh
+    names = [str(name) for name in evidence["channel_name"].values[channels]]
+    record = str(evidence["record_name"].values[level])
+    largest = max(float(values[[state for state, _ in states]].max()), np.finfo(float).tiny)
+    ends, edges = (largest / RANGE, largest), np.r_[low, high[-1]]
+    middle, column = np.sqrt(low * high), "holding_force_N"
+    maps, title = [], level_in_words(evidence, level).replace(", ", "\n", 1)
+    for state, name in states:
+        item = Map(record, middle, names, values[state], column, *ends, log=True, edges=edges)
+        axes = Axis("frequency_Hz", True), Axis("channel", names=names, label=name)
+        maps.append(Panel(*axes, [item], "" if maps else title))
+    return maps

@@ -6,19 +6,11 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.diagnosis.law import SEEN
-from vibroimpact.figures.sheet import WIDTH_IN, Sheet
-from vibroimpact.figures.style import BLACK, GREY, PALE, label_of, shown
+from vibroimpact.figures.plot import Axis, Bars, Mark, Panel, Plot, Series
+from vibroimpact.figures.sheet import WIDTH_IN
+from vibroimpact.figures.style import BLACK, GREY, PALE
 
-from .states import (
-    AS_GIVEN,
-    COLOURS,
-    bars,
-    before_and_after,
-    level_in_words,
-    name_rows,
-    percent,
-    shown_states,
-)
+from .states import AS_GIVEN, COLOURS, before_and_after, level_in_words, percent, shown_states
 
 MOST_UNSEEN = 12  # bars of places
 MOST_PLACES = 3  # supports and elements
@@ -46,8 +38,8 @@ ORBIT = (
 STATIC = "A static part of motion or force is not measured and is left out of both."
 
 
-def law_figure(evidence: xr.Dataset) -> Sheet:
-    """Return the Sheet of force against motion at each support that the sensors tell of."""
+def law_figure(evidence: xr.Dataset) -> Plot:
+    """Return the Plot of force against motion at each support that the sensors tell of."""
     evidence = evidence.isel(law_stretch=[telling_level(evidence)])
     told, unseen = _told_places(evidence)
     level = level_in_words(evidence, int(evidence["law_of_stretch"].values[0]))
@@ -58,45 +50,37 @@ def law_figure(evidence: xr.Dataset) -> Sheet:
     errors = [force_error(evidence, state, told) for state, _ in states]
     words = ("model as given", "completed")
     title = f"Demanded forces: error of {before_and_after(errors, words)}"
-    mosaic = _mosaic(evidence, panels)
-    sheet = Sheet(
+    rows = _rows(evidence, panels)
+    about = CAPTION.format(panels=ORBIT if _has_orbit(panels) else "", static=STATIC, unseen=unseen)
+    return Plot(
         "diagnosis_law",
         title,
-        f"{level}. "
-        + CAPTION.format(panels=ORBIT if _has_orbit(panels) else "", static=STATIC, unseen=unseen),
-        mosaic,
-        size=(min(max(0.6 + 3.1 * len(mosaic[0]), NARROW_IN), WIDTH_IN), 1.0 + 2.5 * len(mosaic)),
+        f"{level}. {about}",
+        {
+            key: (_law_panel if len(places) == 1 else _orbit_panel)(evidence, places, states)
+            for key, places in panels.items()
+        },
+        rows,
+        (min(max(0.6 + 3.1 * len(rows[0]), NARROW_IN), WIDTH_IN), 1.0 + 2.5 * len(rows)),
+        legend=3,
     )
-    for key, places in panels.items():
-        axes = sheet.axes[key]
-        if len(places) == 1:
-            _law_panel(sheet, axes, evidence, places[0], states)
-        else:
-            _orbit_panel(sheet, axes, evidence, places, states)
-    handles, labels = sheet.axes[mosaic[0][0]].get_legend_handles_labels()
-    sheet.figure.legend(handles, labels, loc="outside lower center", ncols=3, markerscale=3)
-    return sheet
 
 
 def _unseen(evidence, level, unseen):
-    """Return the Sheet of how little the sensors know of each force."""
+    """Return the Plot of the shares of each force that the sensors resolve."""
     known, names = evidence["resolution"].values[0], evidence["place_name"].values
     order = np.argsort(-known, kind="stable")[:MOST_UNSEEN]
-    sheet = Sheet(
+    bars = Bars("known", range(len(order)), known[order], {"place": names[order]}, colour=GREY)
+    limit = Mark("", "x", SEEN, width=0.8, line=":")
+    axes = Axis("known_share", False, 0.0, 1.0), Axis("place", names=names[order].tolist())
+    return Plot(
         "diagnosis_law",
         "The law at the supports is not seen by these sensors",
         f"{level}. Share of the force at each place that the sensors tell; below"
         f" {100.0 * SEEN:.0f} % it is not shown against the motion.{unseen}",
+        {"main": Panel(*axes, [bars, limit])},
         size=(WIDTH_IN, 1.3 + 0.28 * len(order)),
     )
-    axes, places = sheet.axes["main"], np.arange(len(order))
-    gid = sheet.record(axes, "known", place=names[order], known_share=known[order])
-    bars(axes, places, 100.0 * known[order], [""] * len(order), gid, color=GREY)
-    axes.axvline(100.0 * SEEN, color=BLACK, linewidth=0.8, linestyle=":")
-    name_rows(axes, names[order])
-    axes.set_xlim(0.0, 100.0)
-    axes.set_xlabel(label_of("known_share"))
-    return sheet
 
 
 def telling_level(evidence: xr.Dataset) -> int:
@@ -157,7 +141,7 @@ def _panels(evidence, told):
     return panels
 
 
-def _mosaic(evidence, panels):
+def _rows(evidence, panels):
     """Return the rows of keys: a row per support where one has several panels."""
     rows: dict[str, list[str]] = {}
     for key, places in panels.items():
@@ -177,46 +161,26 @@ def _has_orbit(panels):
     return any(len(places) == 2 for places in panels.values())
 
 
-def _law_panel(sheet, axes, evidence, place, states):
-    """Draw force against motion of one place."""
+def _law_panel(evidence, places, states):
+    """Return the Panel of force against motion of one place."""
+    (place,) = places
+    name = str(evidence["place_name"].values[place])
     motion = evidence["demanded_motion"].values[0, place].astype(float)
     force = evidence["demanded_force"].values[0, place].astype(float)
     some = slice(None, None, max(1, len(motion) // DOTS))
-    sheet.line(
-        axes,
-        ("place_motion_m", motion[some]),
-        ("place_force_N", force[some]),
-        "demanded",
-        tags={"place": str(evidence["place_name"].values[place])},
-        color=GREY,
-        linewidth=0,
-        marker=".",
-        markersize=2.5,
-        markeredgewidth=0,
-        label="demanded by the sensors",
-        zorder=1,
-    )
-    for state, name in states:
+    look = {"colour": GREY, "line": "", "marker": ".", "size": 2.5, "order": 1}
+    look["label"] = "demanded by the sensors"
+    items = [Series("demanded", motion[some], force[some], {"place": name}, **look)]
+    for state, word in states:
         own = evidence["model_motion"].values[state, 0, place].astype(float)
         law = evidence["model_force"].values[state, 0, place].astype(float)
-        if not np.isfinite(own).all():
-            continue  # the model has no such element
-        middle, median = median_law(own, law)
-        sheet.line(
-            axes,
-            ("place_motion_m", middle),
-            ("place_force_N", median),
-            name,
-            tags={"place": str(evidence["place_name"].values[place])},
-            color=COLOURS[name],
-            linestyle="--" if name == AS_GIVEN else "-",
-            linewidth=1.8,
-            label=name,
-            zorder=3,
-        )
+        if np.isfinite(own).all():  # else the model has no such element
+            look = {"colour": COLOURS[word], "line": "--" if word == AS_GIVEN else "-"}
+            look |= {"width": 1.8, "label": word, "order": 3}
+            items.append(Series(word, *median_law(own, law), {"place": name}, **look))
     errors = [percent(force_error(evidence, state, [place])) for state, _ in states]
-    name = str(evidence["place_name"].values[place]).replace("_", " ")
-    axes.set_title(f"{name}: {' → '.join(errors)}")
+    title = f"{name.replace('_', ' ')}: {' → '.join(errors)}"
+    return Panel(Axis("place_motion_m"), Axis("place_force_N"), items, title)
 
 
 def median_law(motion: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -232,23 +196,24 @@ def median_law(motion: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.nd
     return middle, median
 
 
-def _orbit_panel(sheet, axes, evidence, places, states):
-    """Draw where a place is across its support, and where it is pressed."""
+def _orbit_panel(evidence, places, states):
+    """Return the Panel of the places across a support, and of where it is pressed."""
+    items = []
     for state, name in states:
         motion, force = (
             evidence[f"model_{part}"].values[state, 0, places] for part in ("motion", "force")
         )
         kept = _some(np.flatnonzero(pressed(force)))
-        _dots(sheet, axes, motion[:, kept], f"{name}, pressed", (COLOURS[name], 6.0))
+        items.append(_dots(motion[:, kept], f"{name}, pressed", COLOURS[name], 6.0))
     motion, force = (evidence[f"demanded_{part}"].values[0, places] for part in ("motion", "force"))
     under = pressed(force)
-    _dots(sheet, axes, motion[:, _some(np.flatnonzero(~under))], "demanded, free", (PALE, 2.0))
-    _dots(sheet, axes, motion[:, _some(np.flatnonzero(under))], "demanded, pressed", (BLACK, 2.5))
-    axes.set_aspect("equal", adjustable="datalim")
-    names = evidence["place_name"].values[places]
-    axes.set_title(str(names[0]).rpartition(", ")[0] + ": where forces act")
-    for name, label in zip(names, (axes.set_xlabel, axes.set_ylabel), strict=True):
-        label(f"Motion in {str(name).rpartition(', ')[2]} (mm)")
+    free, held = _some(np.flatnonzero(~under)), _some(np.flatnonzero(under))
+    items.append(_dots(motion[:, free], "demanded, free", PALE, 2.0))
+    items.append(_dots(motion[:, held], "demanded, pressed", BLACK, 2.5))
+    names = [str(name) for name in evidence["place_name"].values[places]]
+    along, across = (f"Motion in {name.rpartition(', ')[2]} (mm)" for name in names)
+    axes = Axis("place_motion_m", label=along), Axis("across_motion_m", label=across)
+    return Panel(*axes, items, names[0].rpartition(", ")[0] + ": where forces act", equal=True)
 
 
 def pressed(force: np.ndarray) -> np.ndarray:
@@ -263,16 +228,6 @@ def _some(numbers):
     return numbers[:: max(1, len(numbers) // DOTS + 1)]
 
 
-def _dots(sheet, axes, motion, curve, style):
-    """Draw dots of motion (2, sample) in m; style: colour and size in points."""
-    colour, size = style
-    place = sheet.record(axes, curve, place_motion_m=motion[0], across_motion_m=motion[1])
-    axes.plot(
-        *(shown("place_motion_m", values) for values in motion),
-        linestyle="none",
-        marker=".",
-        markersize=size,
-        markeredgewidth=0,
-        color=colour,
-        gid=place,
-    )
+def _dots(motion, curve, colour, size):
+    """Return dots of motion (2, sample) in m."""
+    return Series(curve, *motion, colour=colour, line="", marker=".", size=size)

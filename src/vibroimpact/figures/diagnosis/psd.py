@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import xarray as xr
 
 from vibroimpact.figures.discrepancy.quicklook import PSD_COLUMNS
-from vibroimpact.figures.sheet import WIDTH_IN, Sheet
-from vibroimpact.figures.style import BLACK, label_of
+from vibroimpact.figures.plot import Axis, Panel, Plot, Series
+from vibroimpact.figures.sheet import WIDTH_IN
+from vibroimpact.figures.style import BLACK
 from vibroimpact.verdict.content import Misfit, Verdict
 
 from .states import AS_GIVEN, COLOURS, COMPLETED
@@ -33,33 +36,24 @@ CAPTION = (
 )
 
 
-def psd_figure(psd: xr.Dataset, verdict: Verdict) -> Sheet:
-    """Return the Sheet with a row per channel and a column per record, for those that matter most.
+def psd_figure(psd: xr.Dataset, verdict: Verdict) -> Plot:
+    """Return the Plot with a row per channel and a column per record, for those that matter most.
 
     psd: variable psd (state: measured, before, after; record, channel, frequency) in unit²/Hz, NaN
     of a run that failed, with frequency in Hz, load, record_name, split (record,), channel_name and
     channel_kind (channel,).
     """
     records, channels = chosen_records(psd), chosen_channels(psd)
-    mosaic = [[f"{record} {channel}" for record in records] for channel in channels]
-    sheet = Sheet(
-        "diagnosis_psd",
-        _title(verdict.misfit.holdout, bool(verdict.shown_effects())),
-        CAPTION,
-        mosaic,
-        size=(min(1.0 + 2.9 * len(records), WIDTH_IN), 1.3 + 2.4 * len(channels)),
-        sharex=True,
-    )
-    for row in mosaic:
-        for key in row:
-            record, channel = map(int, key.split())
-            _panel(sheet, sheet.axes[key], psd, record, channel, bool(verdict.shown_effects()))
-            if key != row[0]:
-                sheet.axes[key].set_ylabel("")
-            sheet.axes[key].set_xlabel(label_of("frequency_Hz") if row is mosaic[-1] else "")
-    handles, labels = sheet.axes[mosaic[0][0]].get_legend_handles_labels()
-    sheet.figure.legend(handles, labels, loc="outside lower center", ncols=3)
-    return sheet
+    completed = bool(verdict.shown_effects())
+    rows = [[f"{record} {channel}" for record in records] for channel in channels]
+    panels = {
+        f"{record} {channel}": _panel(psd, record, channel, completed)
+        for channel in channels
+        for record in records
+    }
+    title = _title(verdict.misfit.holdout, completed)
+    size = (min(1.0 + 2.9 * len(records), WIDTH_IN), 1.3 + 2.4 * len(channels))
+    return Plot("diagnosis_psd", title, CAPTION, panels, rows, size, share="x", legend=3)
 
 
 def _title(misfit: Misfit | None, completed: bool) -> str:
@@ -109,8 +103,8 @@ def chosen_channels(psd: xr.Dataset) -> list[int]:
     return [int(channel) for channel in order[:CHANNELS_SHOWN]]
 
 
-def _panel(sheet, axes, psd, record, channel, completed):
-    """Draw one record and channel."""
+def _panel(psd, record, channel, completed):
+    """Return the Panel of one record and channel."""
     name, sensor = (
         str(psd[f"{kind}_name"].values[number])
         for kind, number in (("record", record), ("channel", channel))
@@ -118,33 +112,25 @@ def _panel(sheet, axes, psd, record, channel, completed):
     held = " (held out)" if str(psd["split"].values[record]) == "holdout" else ""
     unit = psd["load"].attrs.get("units", "N")
     load = float(psd["load"].values[record])
-    axes.set_title(f"{sensor}\n{name}{held}\n{load:.3g} {unit} RMS", fontsize=8.5)
-    column = PSD_COLUMNS.get(SI_UNITS.get(_kind(psd, channel), ""), "psd_unit2_per_Hz")
     frequency = psd["frequency"].values.astype(float)
-    values = psd["psd"].values[:, record, channel].astype(float)
     shown = (frequency >= LOWEST_HZ) & (frequency <= PASSED * frequency[-1])
-    rows = [(0, "measured", BLACK), (1, AS_GIVEN, COLOURS[AS_GIVEN])]
-    rows += [(2, COMPLETED, COLOURS[COMPLETED])] if completed else []
-    for row, label, colour in rows:
-        sheet.line(
-            axes,
-            ("frequency_Hz", frequency[shown]),
-            (column, values[row][shown]),
-            label,
-            tags={"record": name, "channel": sensor},
-            color=colour,
-            linewidth=1.6 if row == 0 else 1.0,
-            linestyle="--" if label == AS_GIVEN else "-",
-            label=label,
-            zorder=2 + row,
-        )
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    drawn = values[[row for row, _, _ in rows]][:, shown]
+    values = psd["psd"].values[:, record, channel].astype(float)[:, shown]
+    curves = [("measured", BLACK), (AS_GIVEN, COLOURS[AS_GIVEN])]
+    curves += [(COMPLETED, COLOURS[COMPLETED])] if completed else []
+    items = []
+    for row, (label, colour) in enumerate(curves):
+        look = {"label": label, "colour": colour, "line": "--" if label == AS_GIVEN else "-"}
+        look |= {"width": 1.0 if row else 1.6, "order": 2 + row}
+        tags = {"record": name, "channel": sensor}
+        items.append(Series(label, frequency[shown], values[row], tags, **look))
+    drawn = values[: len(curves)]
+    level = Axis(PSD_COLUMNS.get(SI_UNITS.get(_kind(psd, channel), ""), "psd_unit2_per_Hz"), True)
     largest = np.nanmax(drawn)
     if largest > 0.0:
-        least = np.nanmin(np.where(drawn > 0.0, drawn, np.nan))
-        axes.set_ylim(0.5 * max(least, BELOW * largest), 2.0 * largest)
+        least = max(np.nanmin(np.where(drawn > 0.0, drawn, np.nan)), BELOW * largest)
+        level = replace(level, low=0.5 * least, high=2.0 * largest)
+    title = f"{sensor}\n{name}{held}\n{load:.3g} {unit} RMS"
+    return Panel(Axis("frequency_Hz", True), level, items, title)
 
 
 def _kind(psd, channel):

@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from vibroimpact.figures.sheet import WIDTH_IN, Sheet
-from vibroimpact.figures.style import BLUE, GREY, ORANGE, label_of
-from vibroimpact.reports.explanations import (
-    Explanation,
-    chance_text,
-    explanations_of,
-    not_explained,
-)
+from vibroimpact.figures.plot import Axis, Bars, Panel, Plot
+from vibroimpact.figures.sheet import WIDTH_IN
+from vibroimpact.figures.style import BLUE, GREY, ORANGE
+from vibroimpact.reports.explanations import chance_text, explanations_of, not_explained
 from vibroimpact.verdict.content import Verdict, not_run_sentence
 
-from .states import bars, empty_sheet, name_rows
+from .states import empty_plot
 
 MOST_BARS = 14
 NONE_KNOWN = "no probabilities are known that the verdict stands by"
@@ -26,35 +20,31 @@ CAPTION = (
 )
 
 
-def ranking_figure(verdict: Verdict) -> Sheet:
-    """Return the Sheet of bars of the probabilities, the most probable first."""
+def ranking_figure(verdict: Verdict) -> Plot:
+    """Return the Plot of bars of the probabilities, the most probable first."""
     rows = explanations_of(verdict)
     if not rows:
-        return empty_sheet("diagnosis_ranking", "Probabilities", NONE_KNOWN)
+        return empty_plot("diagnosis_ranking", "Probabilities", NONE_KNOWN)
     shown = rows[:MOST_BARS]
     left = sum(row.probability for row in rows[MOST_BARS:])
     words = f" {len(rows) - MOST_BARS} more have {100.0 * left:.2g} % together." if left else ""
     words += not_run_sentence(verdict.not_run)
     first = rows[0]
-    sheet = Sheet(
+    values = [row.probability for row in shown]
+    names = [row.words for row in shown]
+    bars = Bars(
+        "probability",
+        range(len(shown)),
+        values,
+        {"explanation": names},
+        texts=[*map(chance_text, values)],
+        colours=[ORANGE if row.told else GREY if row.open else BLUE for row in shown],
+    )
+    axes = Axis("probability", False, 0.0, 1.12), Axis("explanation", names=names)
+    return Plot(
         "diagnosis_ranking",
         f"Most probable: {first.words}, {chance_text(first.probability)}",
         CAPTION.format(rest=not_explained(verdict), left_out=words),
+        {"main": Panel(*axes, [bars])},
         size=(WIDTH_IN, 1.2 + 0.3 * max(len(shown), 3)),
     )
-    _bars(sheet, sheet.axes["main"], shown)
-    return sheet
-
-
-def _bars(sheet, axes, rows: list[Explanation]):
-    """Draw a bar per explanation with its probability beside it."""
-    values, places = np.array([row.probability for row in rows]), np.arange(len(rows))
-    colours = [ORANGE if row.told else GREY if row.open else BLUE for row in rows]
-    gid = sheet.record(
-        axes, "probability", explanation=[row.words for row in rows], probability=values
-    )
-    bars(axes, places, 100.0 * values, [*map(chance_text, values)], gid, color=colours)
-    name_rows(axes, [row.words for row in rows])
-    axes.set_xlim(0.0, 112.0)
-    axes.set_xticks(range(0, 101, 20))
-    axes.set_xlabel(label_of("probability"))

@@ -7,6 +7,7 @@ from functools import partial
 import xarray as xr
 
 from vibroimpact.config.schema import Config
+from vibroimpact.figures.plot import Plot
 from vibroimpact.figures.sheet import Sheet
 from vibroimpact.verdict.content import Verdict
 
@@ -16,7 +17,7 @@ from .law import law_figure
 from .place import place_figure
 from .psd import psd_figure
 from .ranking import ranking_figure
-from .states import empty_sheet
+from .states import empty_plot
 
 REFUSED = "the campaign was refused"
 NO_PLACE = "the structure has no support and no local element"
@@ -25,8 +26,8 @@ ALONE = "fewer than two sensors measure a motion, and nothing would be held"
 
 def diagnosis_figures(
     evidence: xr.Dataset, psd: xr.Dataset, verdict: Verdict, config: Config | None = None
-) -> list[Sheet]:
-    """Return the Sheets of a diagnosis, in the order of its page: as many for every verdict.
+) -> list[Plot | Sheet]:
+    """Return the Plots of a diagnosis, in the order of its page: as many for every verdict.
 
     evidence: of diagnosis.evidence.evidence_of, empty of a campaign that was refused. psd: see
     psd.psd_figure, empty alike. config: of the model, whose structure is drawn. A figure whose
@@ -53,8 +54,8 @@ def diagnosis_figures(
 
 
 def _drawn(name, figure, data, variable, title, why):
-    """Return the Sheet of a figure, one that says why there is none where data lack a variable."""
+    """Return the Plot of a figure, one that says why there is none where data lack a variable."""
     if variable in data:
         return figure(data)
     why = data.attrs.get("left_out", why) if data else REFUSED
-    return empty_sheet(f"diagnosis_{name}", title, why)
+    return empty_plot(f"diagnosis_{name}", title, why)

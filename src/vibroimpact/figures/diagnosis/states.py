@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
-
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 
-from vibroimpact.figures.sheet import Sheet
+from vibroimpact.figures.plot import Axis, Panel, Plot
 from vibroimpact.figures.style import BLUE, ORANGE
 
 AS_GIVEN, COMPLETED = "model as given", "completed model"
 COLOURS = {AS_GIVEN: ORANGE, COMPLETED: BLUE}
 
 
-def empty_sheet(name: str, title: str, why: str) -> Sheet:
-    """Return a Sheet without a table that says why nothing is drawn."""
-    sheet = Sheet(name, title, f"Nothing is shown: {why}.", size=(7.6, 2.4))
-    sheet.axes["main"].text(0.5, 0.5, why, ha="center", va="center")
-    sheet.axes["main"].set_axis_off()
-    return sheet
+def empty_plot(name: str, title: str, why: str) -> Plot:
+    """Return a Plot without a table that says why nothing is drawn."""
+    panel = Panel(Axis("time_s"), Axis("residual"), [], note=why, blank=True)
+    return Plot(name, title, f"Nothing is shown: {why}.", {"main": panel}, size=(7.6, 2.4))
 
 
 def shown_states(evidence: xr.Dataset) -> list[tuple[int, str]]:
@@ -39,29 +33,6 @@ def level_in_words(evidence: xr.Dataset, stretch: int) -> str:
     unit = load.attrs.get("units", "N")
     told = " (held out)" if held_out else ""
     return f"{name}, {float(load.values[stretch]):.3g} {unit} RMS{told}"
-
-
-def bars(
-    axes: Axes,
-    places: np.ndarray,
-    values: np.ndarray,
-    texts: Sequence[str],
-    gid: str,
-    height: float = 0.62,
-    **style: Any,
-) -> None:
-    """Draw horizontal bars of values at places, each with its text at its end."""
-    for bar, text in zip(axes.barh(places, values, height, zorder=2, **style), texts, strict=True):
-        bar.set_gid(gid)
-        end = bar.get_width(), bar.get_y() + 0.5 * height
-        axes.annotate(text, end, (3, 0), textcoords="offset points", va="center", fontsize=8)
-
-
-def name_rows(axes: Axes, names: Sequence[str]) -> None:
-    """Name the rows of bars at 0, 1, ... from the top."""
-    axes.set_yticks(range(len(names)), [str(name) for name in names], fontsize=8)
-    axes.set_ylim(len(names) - 0.5, -0.5)
-    axes.grid(False, axis="y")
 
 
 def percent(share: float) -> str:

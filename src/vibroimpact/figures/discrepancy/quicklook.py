@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from vibroimpact.campaign.file import force_units, with_no_force
 from vibroimpact.campaign.force_kinds import BASE, FORCE, unit_kinds
 from vibroimpact.campaign.signals import Averaging, campaign_signals, transfer_band
-from vibroimpact.figures.sheet import Sheet
+from vibroimpact.figures.plot import Axis, Panel, Plot, Series, Span
 from vibroimpact.figures.style import (
     BLACK,
     BLUE,
@@ -42,7 +44,7 @@ MARKERS = "os^Dv<>PX"
 
 
 def quicklook(campaign):
-    """Return [Sheet] of a campaign Dataset, in SI units.
+    """Return [Plot] of a campaign Dataset, in SI units.
 
     There is a panel for each of the first 12 forces and responses, and one of the levels.
     """
@@ -64,41 +66,28 @@ def quicklook(campaign):
         for index, name in enumerate(measured.channels)
     ]
     left_out, panels = panels[MOST_PANELS:], panels[:MOST_PANELS]
-    keys = [f"{role} {name}" for role, _, name, _ in panels] + ["levels"]
-    keys += ["."] * (-len(keys) % ACROSS)
-    mosaic = [keys[row : row + ACROSS] for row in range(0, len(keys), ACROSS)]
-    sheet = Sheet(
-        "quicklook",
-        _title(measured),
-        _caption(campaign, measured, panels, left_out),
-        mosaic,
-        size=(12.0, 0.9 + 2.5 * len(mosaic)),
-    )
     colours = ordered_colours(
         [load if np.isfinite(load) and load > 0.0 else 1.0 for load in measured.load_rms]
     )
     band = transfer_band(measured)
-    for role, index, name, unit in panels:
-        axes = sheet.axes[f"{role} {name}"]
-        _spectra(sheet, axes, measured, (role, index), unit, colours, band)
-        axes.set_title(
-            f"{name}{'' if role == 'force' else ', ' + measured.kinds[index].replace('_', ' ')},"
-            f" {unit}",
-            fontsize=9,
+    drawn = {
+        f"{role} {name}": _spectra(measured, (role, index, name, unit), colours, band)
+        for role, index, name, unit in panels
+    }
+    keys = [*drawn, "levels"]
+    keys += ["."] * (-len(keys) % ACROSS)
+    rows = [keys[row : row + ACROSS] for row in range(0, len(keys), ACROSS)]
+    return [
+        Plot(
+            "quicklook",
+            _title(measured),
+            _caption(campaign, measured, panels, left_out),
+            {**drawn, "levels": _levels(measured)},
+            rows,
+            (12.0, 0.9 + 2.5 * len(rows)),
+            legend=4,
         )
-    _levels(sheet, sheet.axes["levels"], measured)
-    handles = [
-        (line, line.get_label())
-        for line in sheet.axes[keys[0]].get_lines()
-        if not line.get_label().startswith("_")
     ]
-    sheet.figure.legend(
-        [line for line, _ in handles],
-        [label for _, label in handles],
-        loc="outside lower center",
-        ncols=4,
-    )
-    return [sheet]
 
 
 def _drive(measured):
@@ -135,46 +124,35 @@ def _shown_unit(units, kind):
         return units or "no unit"
 
 
-def _spectra(sheet, axes, measured, signal, unit, colours, band):
-    """Draw the PSDs of one force or response, ("force" or "response", index), record by record."""
-    role, index = signal
-    column = PSD_COLUMNS.get(unit, "psd_unit2_per_Hz")
+def _spectra(measured, signal, colours, band):
+    """Return the Panel of the PSDs of one force or response, record by record.
+
+    signal: ("force" or "response", index, name, unit).
+    """
+    role, index, name, unit = signal
     load_unit = "m/s²" if _drive(measured) == BASE else "N"
-    lowest, highest = np.inf, 0.0
+    lowest, highest, items = np.inf, 0.0, []
     for record in np.argsort(measured.load_rms, kind="stable"):
         values = getattr(measured, role)[record][index]
         if not np.isfinite(values).all() or values.size < 64 or not values.any():
             continue
         frequency, psd = _binned(values, measured.rate, band)
-        load = measured.load_rms[record]
+        load, record_name = measured.load_rms[record], measured.records[record]
         held = measured.splits[record] == "holdout"
-        sheet.line(
-            axes,
-            ("frequency_Hz", frequency),
-            (column, psd),
-            measured.records[record],
-            tags={
-                LOADS[_drive(measured)]: float(load),
-                "split": measured.splits[record],
-            },
-            color=colours.get(load, BLACK),
-            linewidth=0.9,
-            linestyle="--" if held else "-",
-            label=measured.records[record]
-            + (f" ({load:.3g} {load_unit} RMS" if measured.forces else " (no force")
-            + f"{', held out' if held else ''})",
-        )
+        tags = {LOADS[_drive(measured)]: float(load), "split": measured.splits[record]}
+        driven = f"{load:.3g} {load_unit} RMS" if measured.forces else "no force"
+        look = {"colour": colours.get(load, BLACK), "width": 0.9, "line": "--" if held else "-"}
+        look["label"] = f"{record_name} ({driven}{', held out' if held else ''})"
+        items.append(Series(record_name, frequency, psd, tags, **look))
         lowest, highest = min(lowest, np.percentile(psd, 3)), max(highest, psd.max())
-    if not highest > 0.0:
-        sheet.note(axes, "holes in every record", "frequency_Hz", column)
-        return
-    if band is not None:
-        axes.axvspan(*band, color=SKY, alpha=0.12, linewidth=0)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.set_ylim(
-        max(0.3 * lowest, (FORCE_FLOOR if role == "force" else LOWEST) * highest), 3.0 * highest
-    )
+    level = Axis(PSD_COLUMNS.get(unit, "psd_unit2_per_Hz"), True)
+    if highest > 0.0:
+        floor = (FORCE_FLOOR if role == "force" else LOWEST) * highest
+        level = replace(level, low=max(0.3 * lowest, floor), high=3.0 * highest)
+        items += [Span("x", *band, SKY, 0.12)] if band is not None else []
+    kind = "" if role == "force" else ", " + measured.kinds[index].replace("_", " ")
+    title = f"{name}{kind}, {unit}"
+    return Panel(Axis("frequency_Hz", True), level, items, title, "holes in every record")
 
 
 def _binned(values, rate, band):
@@ -194,41 +172,20 @@ def _binned(values, rate, band):
     )
 
 
-def _levels(sheet, axes, measured):
-    """Draw the RMS of every response over its RMS at the lowest level, against load."""
-    load_column = LOADS[_drive(measured)]
+def _levels(measured):
+    """Return the Panel of the RMS of every response over its RMS at the lowest level, by load."""
     order = np.argsort(measured.load_rms, kind="stable")
-    loads = measured.load_rms[order]
+    loads, items = measured.load_rms[order], []
     for index, name in enumerate(measured.channels if measured.forces else ()):
         rms = np.array([np.std(measured.response[record][index]) for record in order])
-        if not (np.isfinite(rms[0]) and rms[0] > 0.0):
-            continue
-        sheet.line(
-            axes,
-            (load_column, loads),
-            ("rms_over_lowest", rms / rms[0]),
-            name,
-            color=CURVES[index % len(CURVES)],
-            marker=MARKERS[index % len(MARKERS)],
-            linestyle="none",
-            label=name,
-            alpha=0.85,
-        )
-    if not axes.lines or not np.isfinite(loads).all():
+        if np.isfinite(rms[0]) and rms[0] > 0.0:
+            look = {"colour": CURVES[index % len(CURVES)], "marker": MARKERS[index % len(MARKERS)]}
+            items.append(Series(name, loads, rms / rms[0], line="", alpha=0.85, label=name, **look))
+    axes = Axis(LOADS[_drive(measured)], True), Axis("rms_over_lowest", True)
+    if not items or not np.isfinite(loads).all():
         why = "no response without holes" if measured.forces else "no force was measured"
-        sheet.note(axes, why, load_column, "rms_over_lowest")
-        return
+        return Panel(*axes, [], "Levels", why)
     line = np.array([loads[0], loads[-1]])
-    sheet.line(
-        axes,
-        (load_column, line),
-        ("rms_over_lowest", line / line[0]),
-        "linear",
-        color=GREY,
-        linewidth=1.0,
-        zorder=0,
-    )
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.set_title("Levels", fontsize=9)
-    sheet.legend(axes, fontsize=6.5, ncols=2 if len(measured.channels) > 6 else 1)
+    items.append(Series("linear", line, line / line[0], colour=GREY, width=1.0, order=0))
+    columns = 2 if len(measured.channels) > 6 else 1
+    return Panel(*axes, items, "Levels", legend="best", legend_columns=columns)

@@ -12,7 +12,7 @@ from vibroimpact.reports.measured_content import LEVELS, MeasuredContent
 from vibroimpact.reports.study_page import PagePlots
 
 from .equivalent import equivalent_plots, places_of
-from .plot import Control, plotly_library
+from .page_plot import Control, plotly_library
 from .spectrum import frame_places, spectra_of_sensor, spectrum_plot
 from .stabilisation import stabilisation_plot
 
@@ -63,16 +63,10 @@ def _spectrum(found, frames):
 
 
 def _stabilisation(found, frames):
-    poles = {
-        (row["gap_m"], row["load_rms_N"], row["seed"]): row["frequency_Hz"]
-        for row in found.rows
-        if row["method"] == "lscf"
-    }
     identification = found.config.identification
     return stabilisation_plot(
         found.curves,
         found.spectra,
-        {case: poles[case.gap_m, case.load_rms_N, case.seed] for case in found.curves},
         frames,
         driven_sensor(found.config, identification.response_point),
         identification.lscf.band_Hz,

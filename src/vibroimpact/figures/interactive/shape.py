@@ -8,15 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.figures.style import BLACK, BLUE, GREY, PALE
-from vibroimpact.linear.modes import first_mode_shape
+from vibroimpact.figures.plot import Axis, Bars, Panel, Series, Span
+from vibroimpact.figures.study.shapes import linear_shape, support_places
+from vibroimpact.figures.style import BLUE, GREY, PALE
 from vibroimpact.reports.study_statistics import StudyStatistics
 from vibroimpact.study.cases import case_from_id
 
-from .plot import Plot, axis, layout, numbers
+from .page_plot import PagePlot
 
 Place = tuple[float, float]  # gap in m, load
-ALONG = "Arc length along the tube (m)"
+HALF_SUPPORT_m = 0.01  # of a support, as it is drawn
 
 
 def shapes_of(
@@ -42,50 +43,34 @@ def shapes_of(
     return found
 
 
-def support_places(model: Any) -> np.ndarray:
-    """Return (support,) arc lengths in m of the middles of the supports, on the shape line."""
-    middles = [
-        model.contact_position[model.support_of_point == index].mean(axis=0)
-        for index in range(len(model.support_names))
-    ]
-    nearest = [
-        np.argmin(np.linalg.norm(model.line_positions - middle, axis=1)) for middle in middles
-    ]
-    return model.line_arc_length[np.array(nearest, dtype=int)]
-
-
 def shape_plot(
     model: Any,
     shapes: dict[Place, np.ndarray],
     places: Sequence[tuple[str, Place]],
     stiffness: float,
     direction: str,
-) -> Plot:
-    """Return the Plot of the deflection shape by gap and load.
+) -> PagePlot:
+    """Return the plot of the deflection shape by gap and load.
 
     shapes: of shapes_of.
     places: (key of the frame, (gap, load)).
     stiffness: N/m of a support in full contact.
     direction: of the displacement, such as y.
     """
-    frames = {key: _traces(shapes[place]) for key, place in places if place in shapes}
+    along = model.line_arc_length
     limits = [
-        {
-            "type": "scatter",
-            "mode": "lines",
-            "name": name,
-            "x": "@place",
-            "y": numbers(shape / shape[np.argmax(np.abs(shape))]),
-            "line": {"color": GREY, "width": 1, "dash": dash},
-            "hoverinfo": "skip",
-        }
-        for name, k, dash in (
-            ("linear, without contact", 0.0, "dash"),
-            ("linear, in full contact", stiffness, "solid"),
+        Series("linear", along, linear_shape(model, k), label=name, colour=GREY, line=line, width=1)
+        for name, k, line in (
+            ("linear, without contact", 0.0, "--"),
+            ("linear, in full contact", stiffness, "-"),
         )
-        for shape in (first_mode_shape(model, k),)
     ]
-    return Plot(
+    supports = [
+        Span("x", place - HALF_SUPPORT_m, place + HALF_SUPPORT_m, PALE)
+        for place in support_places(model)
+    ]
+    across = Axis("shape", False, -1.15, 1.15, f"Shape, {direction} (largest = 1)")
+    return PagePlot(
         "shape",
         "Deflection shape along the tube",
         (
@@ -94,105 +79,63 @@ def shape_plot(
             " (grey). Vertical lines are the supports; a shape that moves as one has no part left"
             " where it passes through zero."
         ),
-        layout(
-            axis(ALONG, range=_tube_range(model.line_arc_length)),
-            axis(f"Shape, {direction} (largest = 1)", range=[-1.15, 1.15]),
-            height=400,
-            shapes=[_support_line(place) for place in support_places(model)],
-        ),
-        {key: [*limits, *traces] for key, traces in frames.items()},
+        {
+            key: Panel(
+                _tube_axis(along), across, [*supports, *limits, _moving(along, shapes[place])]
+            )
+            for key, place in places
+            if place in shapes
+        },
         ("gap", "load"),
-        shared={"place": numbers(model.line_arc_length)},
         empty="No shape of this load: no main peak was found, or the load is not in the selection.",
+        height=400,
     )
 
 
-def _traces(shape: np.ndarray) -> list[dict]:
-    """Return the envelope, the animated shape and its part in quadrature."""
+def _moving(along: np.ndarray, shape: np.ndarray) -> Series:
+    """Return the shape with its envelope; a page can play it."""
     size = np.abs(shape)
-    edge = {
-        "type": "scatter",
-        "mode": "lines",
-        "x": "@place",
-        "line": {"width": 0},
-        "hoverinfo": "skip",
-        "showlegend": False,
-    }
-    return [
-        {**edge, "y": numbers(-size)},
-        {
-            **edge,
-            "y": numbers(size),
-            "fill": "tonexty",
-            "fillcolor": "rgba(0,114,178,0.14)",
-            "name": "envelope",
-            "showlegend": True,
-        },
-        {
-            "type": "scatter",
-            "mode": "lines+markers",
-            "name": "with contact",
-            "x": "@place",
-            "y": numbers(shape.real),
-            "line": {"color": BLUE, "width": 2},
-            "marker": {"size": 4, "color": BLUE},
-            "hovertemplate": "%{x:.3f} m: %{y:.3f}<extra></extra>",
-            "meta": {"re": numbers(shape.real), "im": numbers(shape.imag)},
-        },
-    ]
-
-
-def _support_line(place: float) -> dict:
-    return {
-        "type": "line",
-        "yref": "paper",
-        "x0": float(place),
-        "x1": float(place),
-        "y0": 0,
-        "y1": 1,
-        "line": {"color": PALE, "width": 5},
-        "layer": "below",
-    }
+    return Series(
+        "with contact",
+        along,
+        shape.real,
+        low=-size,
+        high=size,
+        band=True,
+        moving=shape.imag,
+        label="with contact",
+        colour=BLUE,
+        marker="o",
+        size=2.5,
+        width=2.0,
+    )
 
 
 def contact_along_plot(
     statistics: StudyStatistics, places: Sequence[tuple[str, Place]], model: Any
-) -> Plot:
-    """Return the Plot of the time in contact of each support, along the tube if there is one."""
+) -> PagePlot:
+    """Return the plot of the time in contact of each support, along the tube if there is one."""
     names = statistics.supports
     along = model.line_arc_length.size > 0 and len(names) == len(model.support_names)
-    arc_lengths = numbers(support_places(model)) if along else names
+    if along:
+        axis, at = _tube_axis(model.line_arc_length), support_places(model)
+    else:
+        axis, at = Axis("support", names=names), np.arange(len(names))
+    width = 0.02 * float(model.line_arc_length[-1]) if along else 0.3
     frames = {}
     for key, (gap, load) in places:
         rows = [statistics.spread("contact_fraction", gap, load, name) for name in names]
-        if not any(np.isfinite(row.median) for row in rows):
-            continue
-        frames[key] = [
-            {
-                "type": "bar",
-                "x": arc_lengths,
-                "y": numbers([100.0 * row.median for row in rows]),
-                "customdata": names,
-                "marker": {"color": BLUE},
-                "error_y": {
-                    "type": "data",
-                    "symmetric": False,
-                    "array": numbers([100.0 * (row.high - row.median) for row in rows]),
-                    "arrayminus": numbers([100.0 * (row.median - row.low) for row in rows]),
-                    "color": BLACK,
-                    "thickness": 1,
-                },
-                "hovertemplate": "support %{customdata}: in contact %{y:.3g} % of the time"
-                "<extra></extra>",
-                "width": 0.02 * float(model.line_arc_length[-1]) if along else 0.3,
-                "text": names,
-                "textposition": "outside",
-                "textangle": 0,
-                "constraintext": "none",
-                "cliponaxis": False,
+        middle, low, high = np.array(rows, dtype=float).reshape(-1, 3).T
+        if np.isfinite(middle).any():
+            look: dict[str, Any] = {
+                "colour": BLUE,
+                "label": "in contact",
+                "texts": names,
+                "thickness": width,
             }
-        ]
-    return Plot(
+            bars = Bars("contact", at, middle, {}, low, high, **look)
+            frames[key] = Panel(axis, Axis("contact_fraction", False, 0.0, 1.12), [bars])
+    return PagePlot(
         "contact_along",
         "Time in contact of each support" + (" along the tube" if along else ""),
         (
@@ -200,23 +143,15 @@ def contact_along_plot(
             " range over seeds. Supports of a symmetric structure are touched alike; one that"
             " stands out carries more of the wear."
         ),
-        layout(
-            (
-                axis(ALONG, range=_tube_range(model.line_arc_length))
-                if along
-                else axis("Support", type="category")
-            ),
-            axis("Time in contact (%)", range=[0, 112]),
-            height=400,
-            showlegend=False,
-        ),
         frames,
         ("gap", "load"),
         empty="No contact was recorded here.",
+        height=400,
+        more={"showlegend": False},
     )
 
 
-def _tube_range(arc_length: np.ndarray) -> list[float | None]:
-    """Return the range of an axis from end to end of the tube, whose ends are no line points."""
+def _tube_axis(arc_length: np.ndarray) -> Axis:
+    """Return the axis from end to end of the tube, whose ends are no line points."""
     step = float(arc_length[1] - arc_length[0]) if arc_length.size > 1 else 0.1
-    return numbers([arc_length[0] - step, arc_length[-1] + step])
+    return Axis("arc_length_m", False, arc_length[0] - step, arc_length[-1] + step)

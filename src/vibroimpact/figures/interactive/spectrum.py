@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from vibroimpact.figures.plot import Axis, Panel, Series
 from vibroimpact.figures.style import BLUE
 from vibroimpact.spectra.welch import psd_statistics, segment_spectra
 from vibroimpact.study.cases import case_from_id
 
-from .plot import Plot, axis, key_of, label, layout, numbers
+from .page_plot import PagePlot, key_of
 
 STATISTICS = ("mean", "min", "max")
 SERIES = ("displacement",)
@@ -127,29 +128,32 @@ def spectrum_plot(
     sensor: str,
     band_Hz: Band,
     over: str = "segments and seeds",
-) -> Plot:
-    """Return the Plot of the spectrum of a sensor by gap and load.
+) -> PagePlot:
+    """Return the plot of the spectrum of a sensor by gap and load.
 
     frequency, spectra: of spectra_of_sensor.
     places: (key of the frame, (gap, load)).
     band_Hz: the band that is shown.
-    over: what the mean is taken over.
+    over: of which the mean is taken.
     """
     edges = blocks_of(frequency, band_Hz)
     sizes = np.diff(edges)
     inside = slice(edges[0], edges[-1])
     starts = edges[:-1] - edges[0]
     middle = np.add.reduceat(frequency[inside], starts) / sizes
-    frames = {}
+    curves = {}
     for key, place in places:
-        if place not in spectra:
-            continue
-        values = spectra[place]
-        mean = np.add.reduceat(values["mean"][inside], starts) / sizes
-        low = np.minimum.reduceat(values["min"][inside], starts)
-        high = np.maximum.reduceat(values["max"][inside], starts)
-        frames[key] = [*_band(low, high), _mean(mean)]
-    return Plot(
+        if place in spectra:
+            values = spectra[place]
+            mean = np.add.reduceat(values["mean"][inside], starts) / sizes
+            low = np.minimum.reduceat(values["min"][inside], starts)
+            high = np.maximum.reduceat(values["max"][inside], starts)
+            curves[key] = Series(
+                "spectrum", middle, mean, {}, low, high, True, label="mean", colour=BLUE, width=1.4
+            )
+    axis = Axis("frequency_Hz", False, float(middle[0]), float(middle[-1]))
+    levels = _levels(curves)
+    return PagePlot(
         "spectrum",
         f"Spectrum of the displacement at {sensor}",
         (
@@ -157,17 +161,11 @@ def spectrum_plot(
             " (line), smallest and largest segment (band). Move the slider to see the peaks move"
             " and widen as the contact sets in; the axis follows the level and keeps its decades."
         ),
-        layout(
-            axis("Frequency (Hz)", range=[float(middle[0]), float(middle[-1])]),
-            axis(label(COLUMN), type="log", dtick=2),
-            height=420,
-        ),
-        frames,
+        {key: Panel(axis, levels[key], [curve]) for key, curve in curves.items()},
         ("gap", "load"),
-        shared={"frequency": numbers(middle)},
         empty="No spectrum of this load was read: the slider shows a selection of the loads.",
         wide=True,
-        ranges=_ranges(frames),
+        height=420,
     )
 
 
@@ -180,44 +178,18 @@ def frame_places(gaps: Sequence[float], loads: Sequence[float]) -> list[tuple[st
     ]
 
 
-def _band(low, high):
-    edge = {
-        "type": "scatter",
-        "mode": "lines",
-        "x": "@frequency",
-        "line": {"width": 0.5, "color": "rgba(0,114,178,0.35)"},
-        "hoverinfo": "skip",
-    }
-    return [
-        {**edge, "y": numbers(low), "name": "smallest segment", "showlegend": False},
-        {
-            **edge,
-            "y": numbers(high),
-            "name": "smallest to largest segment",
-            "fill": "tonexty",
-            "fillcolor": "rgba(0,114,178,0.18)",
-        },
-    ]
-
-
-def _mean(mean):
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "name": "mean",
-        "x": "@frequency",
-        "y": numbers(mean),
-        "line": {"width": 1.4, "color": BLUE},
-        "hovertemplate": "%{x:.2f} Hz: %{y:.3g} m²/Hz<extra></extra>",
-    }
-
-
-def _ranges(frames):
-    """Return {key: decadic logarithms of the ends of the axis}, the same number of decades each."""
+def _levels(curves: dict[str, Series]) -> dict[str, Axis]:
+    """Return {key: vertical axis}, each of the same number of decades below its largest value."""
     ends = {}
-    for key, (_, high, mean) in frames.items():
-        positive = [value for value in mean["y"] if value]
-        if positive:
-            ends[key] = np.log10(min(positive)) - 1.0, np.log10(max(high["y"])) + 0.3
-    decades = min(max((high - low for low, high in ends.values()), default=0.0), MOST_DECADES)
-    return {key: numbers([high - decades, high]) for key, (_, high) in ends.items()}
+    for key, curve in curves.items():
+        mean = np.asarray(curve.y)
+        if np.any(mean > 0.0):
+            low, high = 0.1 * mean[mean > 0.0].min(), 2.0 * np.array(curve.high, dtype=float).max()
+            ends[key] = high / low, high
+    decades = min(max((ratio for ratio, _ in ends.values()), default=1.0), 10.0**MOST_DECADES)
+    return {
+        key: Axis(COLUMN, True, ends[key][1] / decades, ends[key][1])
+        if key in ends
+        else Axis(COLUMN)
+        for key in curves
+    }

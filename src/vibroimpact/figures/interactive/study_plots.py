@@ -16,7 +16,7 @@ from vibroimpact.reports.study_words import load_label
 from vibroimpact.spectra.welch import driven_axis
 
 from .equivalent import equivalent_plots, places_of
-from .plot import Control, Plot, plotly_library
+from .page_plot import Control, PagePlot, plotly_library
 from .shape import contact_along_plot, shape_plot, shapes_of
 from .spectrum import (
     band_of,
@@ -99,7 +99,7 @@ def _controls(content: StudyContent, gaps: Sequence[float], loads: Sequence[floa
     ]
 
 
-def _answer_plots(content: StudyContent, files: StudyFiles, title: str) -> list[Plot]:
+def _answer_plots(content: StudyContent, files: StudyFiles, title: str) -> list[PagePlot]:
     if not content.answers:
         return []
     summary = with_places(files.summary, direction_of(content.config))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.figures.sheet import Sheet
-from vibroimpact.figures.style import BLACK, BLUE, GREEN, ORANGE
+from vibroimpact.figures.plot import Axis, Panel, Plot, Series
+from vibroimpact.figures.style import BLUE, GREEN, ORANGE
 
 FAMILY_NAMES = {
     "free_modes": ("free modes", BLUE, "o"),
@@ -26,7 +26,7 @@ FLOOR = 1.0e-9  # round-off of the full model's eigenvalues
 
 
 def basis_quality(config, rows):
-    """Return the Sheet of the worst error of the reduced frequencies against bilateral stiffness.
+    """Return the Plot of the worst error of the reduced frequencies against bilateral stiffness.
 
     rows: table of reduction.basis_accuracy.basis_frequency_errors, list of {column: value}.
     """
@@ -40,59 +40,28 @@ def basis_quality(config, rows):
         " Constrained modes and static shapes carry the contact; a wide band of free modes alone"
         " does not replace them."
     )
-    sheet = Sheet(
-        "basis_quality",
-        "Reduced model: what each family of vectors brings",
-        caption,
-        [list(PANELS)],
-        size=(9.6, 4.2),
-        sharey=True,
-    )
+    panels = {}
     for panel, (title, everything, pattern) in PANELS.items():
-        axes = sheet.axes[panel]
-        axes.set_title(title)
-        _errors(
-            sheet,
-            axes,
-            rows,
-            everything,
-            {"color": BLACK, "marker": "D", "label": "all families", "linewidth": 2.0},
-        )
+        items = _errors(rows, everything, label="all families", marker="D", width=2.0)
         for family, (label, colour, marker) in FAMILY_NAMES.items():
-            _errors(
-                sheet,
-                axes,
-                rows,
-                pattern.format(family),
-                {"color": colour, "marker": marker, "label": label},
-            )
-        axes.set_xscale("log")
-        axes.set_yscale("log")
-        axes.label_outer()
-    handles, labels = sheet.axes["alone"].get_legend_handles_labels()
-    sheet.figure.legend(handles, labels, loc="outside lower center", ncols=4)
-    return [sheet]
+            look = {"label": label, "colour": colour, "marker": marker}
+            items += _errors(rows, pattern.format(family), **look)
+        axes = Axis("support_stiffness_N_per_m", True), Axis("relative_error", True)
+        panels[panel] = Panel(*axes, items, title)
+    title = "Reduced model: what each family of vectors brings"
+    return [Plot("basis_quality", title, caption, panels, size=(9.6, 4.2), share="y", legend=4)]
 
 
-def _errors(sheet, axes, rows, vectors, style):
-    """Draw the worst error of one basis, if the report has it.
+def _errors(rows, vectors, **look):
+    """Return the worst error of one basis in a list, empty where the report has none.
 
     A tube without supports has no constrained modes.
     """
-    chosen = [
-        row for row in rows if row["vectors"] == vectors and np.isfinite(row["relative_error"])
-    ]
-    stiffness = sorted({row["stiffness_N_per_m"] for row in chosen})
-    if not stiffness:
-        return
-    worst = [
-        max(abs(row["relative_error"]) for row in chosen if row["stiffness_N_per_m"] == k)
-        for k in stiffness
-    ]
-    sheet.line(
-        axes,
-        ("support_stiffness_N_per_m", np.array(stiffness)),
-        ("relative_error", np.maximum(worst, FLOOR)),
-        vectors,
-        **style,
+    worst: dict[float, float] = {}
+    for row in rows:
+        if row["vectors"] == vectors and np.isfinite(row["relative_error"]):
+            k = row["stiffness_N_per_m"]
+            worst[k] = max(worst.get(k, FLOOR), abs(row["relative_error"]))
+    return (
+        [Series(vectors, sorted(worst), [worst[k] for k in sorted(worst)], **look)] if worst else []
     )

@@ -3,19 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from matplotlib.cm import ScalarMappable
 from scipy.signal import find_peaks
 
-from vibroimpact.figures.sheet import Sheet
-from vibroimpact.figures.style import (
-    BLACK,
-    GREEN,
-    ORDERED,
-    gap_label,
-    number,
-    ordered_colours,
-    ordered_norm,
-)
+from vibroimpact.figures.plot import Axis, ColourBar, Panel, Plot, Series
+from vibroimpact.figures.style import GREEN, gap_label, number, ordered_colours
 from vibroimpact.geometry.sections import outer_width
 from vibroimpact.linear.responses import psd_family
 
@@ -30,7 +21,7 @@ SMOOTHED, PROMINENCE, NEAR_BINS = 5, np.log(4.0), 20
 
 
 def figure_12_broadband(config, model, curves, spectra, rows):
-    """Return the Sheet of the broadband fit at the load of the widest peak and at the largest one.
+    """Return the Plot of the broadband fit at the load of the widest peak and at the largest one.
 
     curves, spectra: {Case: Dataset} of one gap. rows: table rows of that gap.
     """
@@ -45,46 +36,19 @@ def figure_12_broadband(config, model, curves, spectra, rows):
         " peak."
     )
     cases = first_seed(curves)
-    loads = sorted({transition_load(rows), max(cases)})
-    sheet = Sheet(
-        "figure_12_broadband",
-        "Spectrum with contact and of the best linear tube",
-        caption,
-        [[f"{load:g} N" for load in loads]],
-        size=(7.6, 4.6),
-    )
     stiffness = np.geomspace(
         config.identification.stiffness_range_N_per_m[0], contact_stiffness(model), RANGE_MEMBERS
     )
-    shape = model.sensor_shapes[:, model.sensor_names.index(sensor)]
-    for load in loads:
-        axes, case = sheet.axes[f"{load:g} N"], cases[load]
-        found = [
-            row
-            for row in rows
-            if row["method"] == "broadband"
-            and row["load_rms_N"] == load
-            and row["seed"] == case.seed
-        ]
-        apart = _panel(
-            sheet,
-            axes,
-            config,
-            model,
-            (curves[case], spectra[case]),
-            (stiffness, shape, load, sensor),
-        )
-        peaks = "" if apart is None else f"\npeaks within a factor of {apart:.1f}"
-        axes.set_title(f"load {load:.3g} N RMS\n{_values(found)}{peaks}")
-        sheet.legend(axes, loc="lower left")
-    for load in loads[1:]:
-        sheet.axes[f"{load:g} N"].set_ylabel("")
-    sheet.colour_bar(
-        ScalarMappable(ordered_norm(stiffness), ORDERED),
-        list(sheet.axes.values()),
-        "support_stiffness_N_per_m",
-    )
-    return [sheet]
+    panels = {}
+    for load in sorted({transition_load(rows), max(cases)}):
+        case = cases[load]
+        own = [row for row in rows if row["load_rms_N"] == load and row["seed"] == case.seed]
+        found = [row for row in own if row["method"] == "broadband"]
+        files = curves[case], spectra[case]
+        panels[f"{load:g} N"] = _panel(config, model, files, stiffness, found)
+    title = "Spectrum with contact and of the best linear tube"
+    bar = ColourBar("support_stiffness_N_per_m", stiffness[0], stiffness[-1], log=True, curves=True)
+    return [Plot("figure_12_broadband", title, caption, panels, size=(7.6, 4.6), colour_bars=[bar])]
 
 
 def _values(found):
@@ -102,59 +66,37 @@ def _values(found):
     return f"k = {number(found['k_N_per_m'])} N/m{damping}"
 
 
-def _panel(sheet, axes, config, model, datasets, family):
-    """Draw range, target and best member for one load.
+def _panel(config, model, files, stiffness, found):
+    """Return the Panel of range, target and best member for one load.
 
-    Return the largest factor between the peaks of both, None without a best member.
+    files: (estimates, spectra) of the case. found: its rows of the broadband comparison.
     """
-    (fitted, spectrum), (stiffness, shape, load, sensor) = datasets, family
+    fitted, spectrum = files
+    sensor = driven_sensor(config, config.identification.broadband.point)
     low, high = config.identification.broadband.band_Hz
+    load = float(spectrum.attrs["load_rms_N"])
     frequency = spectrum["frequency"].values
     inside = (frequency >= low) & (frequency <= high)
     frequency = frequency[inside]
     target = spectrum["psd_displacement_mean"].sel(sensor=sensor).values[inside].astype(float)
-    members = (
-        psd_family(model, stiffness, [0.0], frequency, shape)[:, 0]
-        * unit_force_psd(config, frequency)
-        * load**2
-    )
+    shape = model.sensor_shapes[:, model.sensor_names.index(sensor)]
+    members = psd_family(model, stiffness, [0.0], frequency, shape)[:, 0]
+    members = members * unit_force_psd(config, frequency) * load**2
     colours = ordered_colours(stiffness)
-    for k, psd in zip(stiffness, members, strict=True):
-        sheet.line(
-            axes,
-            ("frequency_Hz", frequency),
-            ("psd_m2_per_Hz", psd),
-            "linear",
-            tags={"k_N_per_m": k},
-            color=colours[k],
-            linewidth=0.6,
-        )
-    sheet.line(
-        axes,
-        ("frequency_Hz", frequency),
-        ("psd_m2_per_Hz", target),
-        "target",
-        color=BLACK,
-        linewidth=1.0,
-        label="with contact (target)",
-    )
-    apart = None
+    items = [
+        Series("linear", frequency, psd, {"k_N_per_m": k}, colour=colours[k], width=0.6)
+        for k, psd in zip(stiffness, members, strict=True)
+    ]
+    items.append(Series("target", frequency, target, label="with contact (target)", width=1.0))
+    title = f"load {load:.3g} N RMS\n{_values(found)}"
     if "broadband_curve" in fitted:
         place, best = (fitted[name].values for name in ("broadband_frequency", "broadband_curve"))
-        apart = peak_factor(np.interp(place, frequency, target), best)
-        sheet.line(
-            axes,
-            ("frequency_Hz", fitted["broadband_frequency"].values),
-            ("psd_m2_per_Hz", fitted["broadband_curve"].values),
-            "best linear",
-            color=GREEN,
-            linewidth=2.0,
-            label=f"best linear, correlation {float(fitted['best_correlation']):.3f}",
-        )
-    axes.set_yscale("log")
-    axes.set_xlim(low, high)
-    axes.set_ylim(0.05 * target.min(), 30.0 * target.max())
-    return apart
+        label = f"best linear, correlation {float(fitted['best_correlation']):.3f}"
+        items.append(Series("best linear", place, best, label=label, colour=GREEN, width=2.0))
+        factor = peak_factor(np.interp(place, frequency, target), best)
+        title += f"\npeaks within a factor of {factor:.1f}"
+    levels = Axis("psd_m2_per_Hz", True, 0.05 * target.min(), 30.0 * target.max())
+    return Panel(Axis("frequency_Hz", False, low, high), levels, items, title, legend="lower left")
 
 
 def peak_factor(target, best):

@@ -3,28 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from vibroimpact.figures.sheet import Sheet
-from vibroimpact.figures.style import (
-    BLACK,
-    BLUE,
-    GAP_COLOURS,
-    GAP_MARKERS,
-    GREEN,
-    GREY,
-    ORANGE,
-    PINK,
-    RED,
-    gap_label,
-)
+from vibroimpact.figures.plot import Axis, Item, Mark, Panel, Plot, Series, Text
+from vibroimpact.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PINK, RED, gap_label
 from vibroimpact.geometry.sections import outer_width
 from vibroimpact.integration.energy_limit import ENERGY_LIMIT
 from vibroimpact.reports.centred_wear import centred_sentence
 from vibroimpact.study.cases import case_from_id
 
 from .cases_of_gap import CasesOnDemand
+from .equivalent import look_of_gap
 from .seed_scatter import over_seeds
 
 RESIDUALS = {
@@ -66,8 +57,37 @@ def limits(integration):
     }
 
 
+def residual_items(found, accepted) -> list[Item]:
+    """Return the points of energy residuals of cases and the Marks of their limits.
+
+    found: {key of RESIDUALS: (loads, values, {further column: values})}.
+    accepted: {key of RESIDUALS: largest accepted value}.
+    """
+    items: list[Item] = []
+    for variable, (loads, values, tags) in found.items():
+        name, colour, marker = RESIDUALS[variable]
+        look: dict[str, Any] = {
+            "label": name,
+            "colour": colour,
+            "marker": marker,
+            "line": "",
+            "size": 3.5,
+        }
+        hover = [
+            f"{value:.2g} of the input work<br>{load:.3g} RMS, gap {1e3 * gap:.3g} mm"
+            for load, value, gap in zip(loads, values, tags["gap_m"], strict=True)
+        ]
+        items.append(Series(variable, loads, values, tags, hover=hover, **look))
+        if variable in accepted:
+            limit = accepted[variable]
+            items.append(
+                Mark(f"limit of {variable}", "y", limit, colour=colour, line="--", width=1.0)
+            )
+    return items
+
+
 def energy_balance(config, records):
-    """Return the Sheet of the residuals of all cases and of the energies of one case.
+    """Return the Plot of the residuals of all cases and of the energies of one case.
 
     records: {Case: Dataset} of statistics.
     """
@@ -88,69 +108,47 @@ def energy_balance(config, records):
         f" {gap_label(case.gap_m, outer_width(config.structure.section))}, seed {case.seed});"
         " negative times are the start-up before the record."
     )
-    sheet = Sheet(
-        "energy_balance",
-        "Energy balance of the simulations",
-        caption,
-        [["residuals", "energies"]],
-        size=(7.6, 4.4),
+    loads = [key.load_rms_N for key in records]
+    tags = {
+        "gap_m": np.array([key.gap_m for key in records]),
+        "seed": np.array([key.seed for key in records]),
+    }
+    found = {
+        variable: (
+            loads,
+            np.maximum([float(dataset[variable]) for dataset in records.values()], FLOOR),
+            tags,
+        )
+        for variable in RESIDUALS
+    }
+    residuals = Panel(
+        Axis("load_rms_N", True),
+        Axis("residual", True, 0.2 * FLOOR, 1.0e4),  # room for the legend
+        residual_items(found, accepted),
+        f"residuals of {len(records)} cases",
+        legend="upper left",
     )
-    axes = sheet.axes["residuals"]
-    axes.set_title(f"residuals of {len(records)} cases")
-    for variable, (name, colour, marker) in RESIDUALS.items():
-        values = np.maximum([float(dataset[variable]) for dataset in records.values()], FLOOR)
-        sheet.line(
-            axes,
-            ("load_rms_N", np.array([key.load_rms_N for key in records])),
-            ("residual", values),
-            variable,
-            tags={
-                "gap_m": np.array([key.gap_m for key in records]),
-                "seed": np.array([key.seed for key in records]),
-            },
-            color=colour,
-            marker=marker,
-            linestyle="none",
-            markersize=3.5,
-            label=name,
+    return [
+        Plot(
+            "energy_balance",
+            "Energy balance of the simulations",
+            caption,
+            {"residuals": residuals, "energies": _energies(records[case], case)},
+            size=(7.6, 4.4),
         )
-        if variable in accepted:
-            sheet.mark(
-                axes,
-                "residual",
-                accepted[variable],
-                f"limit of {variable}",
-                vertical=False,
-                color=colour,
-                linestyle="--",
-                linewidth=1.0,
-            )
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.set_ylim(0.2 * FLOOR, 1.0e4)  # room for the legend
-    sheet.legend(axes, loc="upper left")
-    _energies(sheet, sheet.axes["energies"], records[case])
-    sheet.axes["energies"].set_title(f"energies at {case.load_rms_N:g} N RMS")
-    return [sheet]
+    ]
 
 
-def _energies(sheet, axes, record):
-    """Draw the energy terms of a case over time."""
-    time = record["energy_time"].values
-    for term, (name, colour, dash) in TERMS.items():
-        sheet.line(
-            axes,
-            ("time_s", time),
-            ("energy_J", np.abs(record["energy"].sel(energy_term=term).values)),
-            term,
-            color=colour,
-            linestyle=dash,
-            label=name,
-        )
-    axes.set_yscale("log")
-    largest = float(np.abs(record["energy"]).max())
-    axes.set_ylim(1e-6 * largest, 1e3 * largest)  # room for the legend
-    sheet.legend(axes, loc="upper left")
+def _energies(record, case):
+    """Return the Panel of the energy terms of a case over time."""
+    time, largest = record["energy_time"].values, float(np.abs(record["energy"]).max())
+    items = []
+    for term, (name, colour, line) in TERMS.items():
+        values = np.abs(record["energy"].sel(energy_term=term).values)
+        items.append(Series(term, time, values, label=name, colour=colour, line=line))
+    axis = Axis("energy_J", True, 1e-6 * largest, 1e3 * largest)  # room for the legend
+    title = f"energies at {case.load_rms_N:g} N RMS"
+    return Panel(Axis("time_s"), axis, items, title, legend="upper left")
 
 
 STATISTICS = (
@@ -181,12 +179,12 @@ def records_shown(paths, read):
 
 
 def contact_statistics(config, model, records):
-    """Return the Sheet of contact statistics and peak stress against load, for every gap.
+    """Return the Plot of contact statistics and peak stress against load, for every gap.
 
     records: {Case: Dataset} of statistics.
     """
-    gaps = sorted({case.gap_m for case in records}, reverse=True)
     imperfection = config.integration.imperfection
+    gaps = sorted({case.gap_m for case in records}, reverse=True)
     caveat = centred_sentence(imperfection, model.centre_offset, min(gaps))
     caption = (
         "Contact against load, for every gap: fraction of time in contact, impacts per second, RMS"
@@ -195,84 +193,47 @@ def contact_statistics(config, model, records):
         " above which a case is flagged (dashed). Median over seeds and supports, bars from the"
         f" smallest to the largest value. {caveat}"
     ).rstrip()
-    sheet = Sheet(
-        "contact_statistics",
-        "Contact, wear and stress against load",
-        caption,
-        [["fraction", "rate", "velocity"], ["force", "wear", "stress"]],
-        size=(9.6, 6.0),
-        sharex=True,
-    )
-    diameter = outer_width(config.structure.section)
-    for index, gap in enumerate(gaps):
-        colour, marker = (
-            GAP_COLOURS[index % len(GAP_COLOURS)],
-            GAP_MARKERS[index % len(GAP_MARKERS)],
-        )
-        style = {
-            "color": colour,
-            "marker": marker,
-            "linewidth": 0.9,
-            "label": f"gap {gap_label(gap, diameter)}",
-        }
-        for panel, variable, column, _ in STATISTICS:
-            rows = _rows(records, gap, variable, column)
-            over_seeds(
-                sheet,
-                sheet.axes[panel],
-                rows,
-                "load_rms_N",
-                column,
-                variable,
-                tags=("gap_m",),
-                **style,
-            )
-        over_seeds(
-            sheet,
-            sheet.axes["force"],
-            _rows(records, gap, "peak_force", "force_N"),
-            "load_rms_N",
-            "force_N",
-            "peak_force",
-            tags=("gap_m",),
-            color=colour,
-            marker=marker,
-            markerfacecolor="white",
-            linewidth=0.9,
-            linestyle=":",
-        )
-    sheet.mark(
-        sheet.axes["stress"],
-        "stress_Pa",
-        config.record.stress_limit_Pa,
-        "limit",
-        vertical=False,
-        color=BLACK,
-        linestyle="--",
-        linewidth=1.0,
-    )
-    for panel, _, column, title in STATISTICS:
-        axes = sheet.axes[panel]
-        axes.set_title(title)
-        if not axes.get_xlabel():
-            sheet.note(axes, "no contact", "load_rms_N", column)
-        axes.set_xscale("log")
-        if panel != "fraction" and axes.get_legend_handles_labels()[1]:
-            axes.set_yscale("log")
+    items = {
+        panel: _of_gaps(config, records, gaps, variable, column)
+        for panel, variable, column, _ in STATISTICS
+    }
+    limit = config.record.stress_limit_Pa
+    items["stress"].append(Mark("limit", "y", limit, line="--", width=1.0, colour=BLACK))
     if caveat:
-        sheet.axes["wear"].text(
-            0.03,
-            0.97,
-            f"centred to {imperfection:g} of the gap:\nhardly any sliding in plane",
-            transform=sheet.axes["wear"].transAxes,
-            va="top",
-            fontsize=8.0,
+        words = f"centred to {imperfection:g} of the gap:\nhardly any sliding in plane"
+        items["wear"].append(Text(words, 0.03, 0.97, "xy", align=("left", "top")))
+    loads = Axis("load_rms_N", True)
+    panels = {
+        panel: Panel(loads, Axis(column, panel != "fraction"), items[panel], title, "no contact")
+        for panel, _, column, title in STATISTICS
+    }
+    names = list(panels)
+    return [
+        Plot(
+            "contact_statistics",
+            "Contact, wear and stress against load",
+            caption,
+            panels,
+            [names[:3], names[3:]],
+            (9.6, 6.0),
+            share="x",
+            legend=3,
         )
-    for panel in ("fraction", "rate", "velocity"):
-        sheet.axes[panel].set_xlabel("")
-    handles, labels = sheet.axes["stress"].get_legend_handles_labels()
-    sheet.figure.legend(handles, labels, loc="outside lower center", ncols=3)
-    return [sheet]
+    ]
+
+
+def _of_gaps(config, records, gaps, variable, column) -> list[Item]:
+    """Return a statistic of all gaps; with the RMS of the forces goes their peak, hollow."""
+    items: list[Item] = []
+    for index, gap in enumerate(gaps):
+        label = f"gap {gap_label(gap, outer_width(config.structure.section))}"
+        look = look_of_gap(index) | {"width": 0.9, "label": label}
+        for name, more in ((variable, {}), ("peak_force", {"line": ":", "hollow": True})):
+            if name == variable or variable == "rms_force":
+                rows = _rows(records, gap, name, column)
+                look |= more | ({"label": ""} if more else {})
+                items += over_seeds(rows, "load_rms_N", column, name, tags=("gap_m",), **look)
+    return items
 
 
 def _rows(records, gap, variable, column):

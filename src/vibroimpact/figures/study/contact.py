@@ -8,7 +8,7 @@ from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.contact.outline import facing_angle, radial_gap
 from vibroimpact.contact.profiles import with_plain_profiles
 from vibroimpact.contact.static_law import static_force, support_gap
-from vibroimpact.figures.sheet import Sheet
+from vibroimpact.figures.plot import Axis, Item, Mark, Panel, Plot, Series, Span, Text, extent
 from vibroimpact.figures.style import (
     BLACK,
     BLUE,
@@ -20,7 +20,6 @@ from vibroimpact.figures.style import (
     SKY,
     gap_label,
     number,
-    shown,
 )
 from vibroimpact.geometry.sections import outer_width
 from vibroimpact.reduction.reduced_model import build_model
@@ -28,7 +27,7 @@ from vibroimpact.reduction.reduced_model import build_model
 from .linear_limits import HELD, driven_frequencies
 
 POINTS = {1: PINK, 2: ORANGE, 3: GREEN, 5: BLUE, 9: BLACK}  # contact points per support -> colour
-LINES = {1: (0, (1, 1)), 2: (0, (4, 1)), 3: (0, (4, 1, 1, 1)), 5: "-", 9: (0, (6, 2))}
+LINES = {1: ":", 2: "--", 3: "-.", 5: "-", 9: "--"}
 # Kind of a profile -> the direction of the displacement in figure 3.
 WAYS = {
     "circular": "in any radial direction",
@@ -41,7 +40,7 @@ NEAR = 0.05
 
 
 def figure_03_contact_law(config, structure):
-    """Return the Sheet of the discretised layer of stiffness and of the force law.
+    """Return the Plot of the discretised layer of stiffness and of the force law.
 
     The law is drawn with its tangent and secant stiffness.
     """
@@ -57,142 +56,77 @@ def figure_03_contact_law(config, structure):
         " the tangent stiffness; force over displacement is the secant stiffness, which rises with"
         " the amplitude: this is why an equivalent linear support stiffens with the load."
     )
-    sheet = Sheet(
-        "figure_03_contact_law",
-        "Contact: a discretised elastic layer behind a gap",
-        caption,
-        [["layer", "law"]],
-        size=(7.6, 3.7),
-        width_ratios=(1, 1.35),
-    )
-    _layer(sheet, sheet.axes["layer"], support, structure)
-    _law(sheet, sheet.axes["law"], support, gap)
-    return [sheet]
+    panels = {"layer": _layer(support, structure), "law": _law(support, gap)}
+    title = "Contact: a discretised elastic layer behind a gap"
+    size = (7.6, 3.7)
+    return [Plot("figure_03_contact_law", title, caption, panels, size=size, widths=(1, 1.35))]
 
 
-def _layer(sheet, axes, support, structure):
-    """Draw the stiffness density and the points that discretise it, over the height."""
-    axes.set_title("stiffness over the height")
+def _layer(support, structure):
+    """Return the Panel of the stiffness over the height and the points that discretise it."""
     members = structure.contact.support == 0
     height = structure.contact.arc_length[members] - structure.contact.arc_length[members].mean()
     values = structure.contact.stiffness[members]
     half = 0.5 * support.height_m
     density = values.sum() / support.height_m
-    layer = np.array([-half, -half, half, half]), np.array([0.0, density, density, 0.0])
-    sheet.line(
-        axes,
-        ("stiffness_density_N_per_m2", layer[1]),
-        ("height_in_support_m", layer[0]),
-        "layer",
-        color=GREY,
-        linewidth=1.0,
-        label="elastic layer",
-    )
-    axes.fill_betweenx(
-        shown("height_in_support_m", layer[0]),
-        shown("stiffness_density_N_per_m2", layer[1]),
-        color=GREY,
-        alpha=0.15,
-        linewidth=0,
-    )
     share = values / (support.height_m / len(values))
-    sheet.line(
-        axes,
-        ("stiffness_density_N_per_m2", share),
-        ("height_in_support_m", height),
-        "contact points",
-        tags={"contact_stiffness_N_per_m": values},
-        color=RED,
-        marker="o",
-        linestyle="none",
-        label="contact points",
+    layer = np.array([0.0, density, density, 0.0]), np.array([-half, -half, half, half])
+    tags = {"contact_stiffness_N_per_m": values}
+    look = {"colour": RED, "marker": "o", "line": "", "label": "contact points"}
+    items: list[Item] = [
+        Series("layer", *layer, label="elastic layer", colour=GREY, width=1.0),
+        Series("contact points", share, height, tags, **look),
+    ]
+    for place, size, value in zip(height, share, values, strict=True):
+        items.append(Series("", [0.0, size], [place, place], colour=RED, width=1.2))
+        words, align = f"{number(value)} N/m", ("center", "bottom")
+        items.append(Text(words, 0.4, place, "x", (0, 2), align))
+    axes = (
+        Axis("stiffness_density_N_per_m2", False, 0.0, 1.25 * max(share.max(), density)),
+        Axis("height_in_support_m", False, -1.5 * half, 1.75 * half),
     )
-    axes.hlines(
-        shown("height_in_support_m", height),
-        0.0,
-        shown("stiffness_density_N_per_m2", share),
-        color=RED,
-        linewidth=1.2,
-    )
-    for place, value in zip(height, values, strict=True):
-        axes.annotate(
-            f"{number(value)} N/m",
-            (0.4, shown("height_in_support_m", place)),
-            xycoords=("axes fraction", "data"),
-            xytext=(0, 2),
-            textcoords="offset points",
-            ha="center",
-            va="bottom",
-            fontsize=8,
-        )
-    axes.set_xlim(0.0, shown("stiffness_density_N_per_m2", 1.25 * max(share.max(), density)))
-    axes.set_ylim(-1.5e3 * half, 1.75e3 * half)
-    sheet.legend(axes, loc="upper right", ncols=2)
+    legend = {"legend": "upper right", "legend_columns": 2}
+    return Panel(*axes, items, "stiffness over the height", **legend)
 
 
-def _law(sheet, axes, support, gap):
-    """Draw the force law along the first stop or land, and secants to two displacements."""
-    axes.set_title("force, tangent and secant stiffness")
+def _law(support, gap):
+    """Return the Panel of the force along the first stop or land, with secants to two points."""
     angle = facing_angle(support.profile)
     ahead, behind = radial_gap(support.profile, gap, np.array([angle, angle + np.pi]))
     reach = 1.6 * max(abs(side) for side in (ahead, behind) if np.isfinite(side)) or 1e-5
     displacement = np.linspace(-reach, reach, 321)
     force = static_force(support, gap, angle, displacement)
-    slope = np.gradient(force, displacement)
-    law = {
-        "tangent_stiffness_N_per_m": slope,
-        "secant_stiffness_N_per_m": np.divide(
-            force, displacement, out=np.zeros_like(force), where=displacement != 0.0
-        ),
+    secant = np.divide(force, displacement, out=np.zeros_like(force), where=displacement != 0.0)
+    tags = {
+        "tangent_stiffness_N_per_m": np.gradient(force, displacement),
+        "secant_stiffness_N_per_m": secant,
     }
     label = "contact force"
     if support.hertz_N_per_m15 == 0.0:
         label += f"; tangent {number(np.sum(support.stiffness_N_per_m))} N/m past the gap"
-    sheet.line(
-        axes,
-        ("radial_displacement_m", displacement),
-        ("contact_force_N", force),
-        "contact force",
-        tags=law,
-        color=BLUE,
-        linewidth=2.2,
-        label=label,
-    )
-    if ahead > 0.0:
-        _secants(sheet, axes, support, gap, angle, ahead)
+    look = {"colour": BLUE, "width": 2.2, "label": label}
+    items: list[Item] = [Series("contact force", displacement, force, tags, **look)]
+    items += _secants(support, gap, angle, ahead) if ahead > 0.0 else []
     for side in {side for side in (-behind, ahead) if np.isfinite(side)}:
-        sheet.mark(
-            axes, "radial_displacement_m", side, "gap", color=GREY, linewidth=0.9, linestyle=":"
-        )
-    axes.annotate(
-        "gap",
-        (shown("radial_displacement_m", ahead), 0.03),
-        xycoords=("data", "axes fraction"),
-        xytext=(3, 0),
-        textcoords="offset points",
-        color=GREY,
-        fontsize=8.5,
-    )
+        text = "gap" if side == ahead else ""
+        items.append(Mark("gap", "x", side, text, colour=GREY, width=0.9, line=":"))
     span = np.ptp(force)
-    axes.set_ylim(force.min() - 0.08 * span, force.max() + 0.5 * span)
-    sheet.legend(axes, loc="upper left")
+    axes = (
+        Axis("radial_displacement_m"),
+        Axis("contact_force_N", False, force.min() - 0.08 * span, force.max() + 0.5 * span),
+    )
+    return Panel(*axes, items, "force, tangent and secant stiffness", legend="upper left")
 
 
-def _secants(sheet, axes, support, gap, angle, ahead):
-    """Draw secants to two displacements beyond the stop that lies ahead."""
-    for reach, colour, dash in ((1.2, ORANGE, (0, (5, 2))), (1.5, RED, (0, (2, 1)))):
+def _secants(support, gap, angle, ahead):
+    """Return secants to two displacements beyond the stop that lies ahead."""
+    items = []
+    for reach, colour, line in ((1.2, ORANGE, "--"), (1.5, RED, ":")):
         (top,) = static_force(support, gap, angle, np.array([reach * ahead]))
-        sheet.line(
-            axes,
-            ("radial_displacement_m", [0.0, reach * ahead]),
-            ("contact_force_N", [0.0, top]),
-            f"secant at {reach:g} gap",
-            color=colour,
-            linestyle=dash,
-            marker="o",
-            markevery=[1],
-            label=f"secant at {reach:g} gap: {number(top / (reach * ahead))} N/m",
-        )
+        label = f"secant at {reach:g} gap: {number(top / (reach * ahead))} N/m"
+        look = {"colour": colour, "line": line, "marker": "o", "label": label}
+        items.append(Series(f"secant at {reach:g} gap", [0.0, reach * ahead], [0.0, top], **look))
+    return items
 
 
 def model_with_points(config, points):
@@ -206,7 +140,7 @@ def model_with_points(config, points):
 
 
 def figure_04_first_frequency(config):
-    """Return the Sheet of first frequency against bilateral stiffness, by number of points."""
+    """Return the Plot of first frequency against bilateral stiffness, by number of points."""
     caption = (
         "First frequency of the driven plane against a bilateral stiffness k per support, shared"
         " by 1, 2, 3, 5 or 9 contact points over its height. Dotted: the frequencies of the free"
@@ -215,97 +149,56 @@ def figure_04_first_frequency(config):
         " step to the neighbouring limit. One point can pin the tube but never clamp it; five"
         " follow the layer over the whole range."
     )
-    sheet = Sheet(
-        "figure_04_first_frequency",
-        "First frequency against support stiffness",
-        caption,
-        size=(7.6, 4.7),
-    )
-    axes = sheet.axes["main"]
-    axes.set_title("first frequency of the driven plane, by number of contact points per support")
     models = {points: model_with_points(config, points) for points in POINTS}
+    finest = max(POINTS)
     frequency = {
         points: driven_frequencies(model, STIFFNESS)[:, 0] for points, model in models.items()
     }
-    finest = max(POINTS)
     limits = {
         "free": driven_frequencies(models[1], 0.0)[0, 0],
         "pinned in the middle": driven_frequencies(models[1], HELD)[0, 0],
         "clamped over the height": driven_frequencies(models[finest], HELD)[0, 0],
     }
-    _shade_ranges(axes, frequency[finest], *limits.values())
+    items = _shaded_ranges(frequency[finest], *limits.values())
     for points, values in frequency.items():
-        sheet.line(
-            axes,
-            ("support_stiffness_N_per_m", STIFFNESS),
-            ("first_frequency_Hz", values),
-            f"{points} points",
-            tags={"contact_points": points},
-            color=POINTS[points],
-            linestyle=LINES[points],
-            linewidth=2.2 if points == 5 else 1.4,
-            label=f"{points} point{'s' * (points > 1)}",
-        )
+        look = {"colour": POINTS[points], "line": LINES[points], "width": 1.4 + 0.8 * (points == 5)}
+        look["label"] = f"{points} point{'s' * (points > 1)}"
+        tags = {"contact_points": points}
+        items.append(Series(f"{points} points", STIFFNESS, values, tags, **look))
     for name, value in limits.items():
-        sheet.mark(
-            axes,
-            "first_frequency_Hz",
-            value,
-            name,
-            vertical=False,
-            color=GREY,
-            linestyle=":",
-            linewidth=1.0,
-        )
-        axes.annotate(
-            f"{name}: {value:.2f} Hz",
-            (STIFFNESS[0], value),
-            xytext=(3, 2),
-            textcoords="offset points",
-            fontsize=8.5,
-            color=BLACK,
-        )
-    totals = sorted({float(np.sum(support.stiffness_N_per_m)) for support in config.supports})
-    for total in totals:
-        sheet.mark(
-            axes,
-            "support_stiffness_N_per_m",
-            total,
-            "contact stiffness of the study",
-            color=RED,
-            linewidth=1.0,
-            linestyle="--",
-            label=(
-                f"full contact in the study, {number(total)} N/m:"
-                f" {driven_frequencies(models[finest], total)[0, 0]:.2f} Hz"
-            ),
-        )
-    axes.set_xscale("log")
-    axes.set_xlim(STIFFNESS[0], STIFFNESS[-1])
-    axes.margins(y=0.08)
-    sheet.figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=4)
-    return [sheet]
+        items.append(Mark(name, "y", value, colour=GREY, line=":", width=1.0))
+        items.append(Text(f"{name}: {value:.2f} Hz", STIFFNESS[0], value, shift=(3, 2), size=8.5))
+    for total in sorted({float(np.sum(each.stiffness_N_per_m)) for each in config.supports}):
+        first = driven_frequencies(models[finest], total)[0, 0]
+        look = {"label": f"full contact in the study, {number(total)} N/m: {first:.2f} Hz"}
+        look |= {"colour": RED, "width": 1.0, "line": "--"}
+        items.append(Mark("contact stiffness of the study", "x", total, **look))
+    panel = Panel(
+        Axis("support_stiffness_N_per_m", True, STIFFNESS[0], STIFFNESS[-1]),
+        Axis("first_frequency_Hz", False, *extent([*frequency.values()], margin=0.08)),
+        items,
+        "first frequency of the driven plane, by number of contact points per support",
+    )
+    title, size = "First frequency against support stiffness", (7.6, 4.7)
+    return [Plot("figure_04_first_frequency", title, caption, {"main": panel}, size=size, legend=4)]
 
 
-def _shade_ranges(axes, frequency, free, pinned, clamped):
-    """Shade the stiffness ranges that belong to a limit."""
+def _shaded_ranges(frequency, free, pinned, clamped) -> list[Item]:
+    """Return the stiffness ranges that belong to a limit, shaded, with their names."""
     steps = pinned - free, clamped - pinned
     ranges = {
         "free": frequency < free + NEAR * steps[0],
         "pinned": (frequency > pinned - NEAR * steps[0]) & (frequency < pinned + NEAR * steps[1]),
         "clamped": frequency > clamped - NEAR * steps[1],
     }
+    items: list[Item] = []
     for name, inside in ranges.items():
         places = STIFFNESS[inside]
         if places.size == 0:
             continue
-        axes.axvspan(places[0], places[-1], color=SKY, alpha=0.18, linewidth=0, zorder=0)
+        items.append(Span("x", places[0], places[-1], SKY, 0.18))
         at_end = places[-1] == STIFFNESS[-1]
-        axes.annotate(
-            f"{name} range",
-            (places[-1] if at_end else np.sqrt(places[0] * places[-1]), 0.01),
-            xycoords=("data", "axes fraction"),
-            ha="right" if at_end else "center",
-            va="bottom",
-            fontsize=8.5,
-        )
+        x = places[-1] if at_end else np.sqrt(places[0] * places[-1])
+        align = ("right" if at_end else "center", "bottom")
+        items.append(Text(f"{name} range", x, 0.01, "y", align=align, size=8.5))
+    return items

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
-from vibroimpact.figures.sheet import Sheet
+from vibroimpact.figures.plot import Axis, Mark, Panel, Plot, Series, extent
 from vibroimpact.figures.style import (
-    BLACK,
     GAP_COLOURS,
     GAP_MARKERS,
     GREY,
     METHODS,
     OPEN_METHODS,
-    PINK,
     gap_label,
 )
 from vibroimpact.geometry.sections import outer_width
@@ -21,13 +21,26 @@ from vibroimpact.study.method_agreement import COMPARED, collapse_rows, summary_
 from .linear_limits import contact_stiffness
 from .seed_scatter import medians, over_seeds
 
+COLUMNS = {"k": "k_N_per_m", "c": "c_N_s_per_m"}
 PREDICTED = ("statistical_linearisation", "secant")
-
+DRAWN = {"k": tuple(METHODS), "c": (*OPEN_METHODS, "lscf", "broadband")}
+HIGHEST_K = 2e7  # N/m, of the axis
 MOST_COLUMNS = 4  # gaps side by side; more begin another block below
 
 
+def look_of(method: str) -> dict[str, Any]:
+    """Return how the curve of a method looks, in every plot."""
+    label, colour, marker = METHODS.get(method, (method, GREY, "o"))
+    look = {"label": label, "colour": colour, "marker": marker}
+    if method in PREDICTED:
+        line = "-" if method == "secant" else "--"
+        return look | {"line": line, "size": 3.5, "width": 1.0, "order": 1}
+    hollow = method in OPEN_METHODS
+    return look | {"width": 0.8, "hollow": hollow, "order": 3 if hollow else 4}
+
+
 def figure_13_equivalent_support(config, model, rows, level="load_rms_N", study=None, caption=""):
-    """Return the Sheet of k and c against load, a colour and marker per method.
+    """Return the Plot of k and c against load, a colour and marker per method.
 
     There is a column per gap, and per group of supports and direction where there are several.
 
@@ -47,122 +60,100 @@ def figure_13_equivalent_support(config, model, rows, level="load_rms_N", study=
         " simulated contact forces. Dashed: the contact stiffness, the upper limit."
     )
     gaps = sorted({row["gap_m"] for row in rows}, reverse=True)
-    panels = {
-        (gap, place): tuple(f"{name}, {' in '.join(place)}, gap {gap:.5g} m" for name in "kc")
-        for place in places
-        for gap in gaps
-    }
-    mosaic = _in_blocks(list(panels.values()))
-    sheet = Sheet(
-        "figure_13_equivalent_support",
-        "Equivalent stiffness and damping by every method",
-        caption,
-        mosaic,
-        size=(max(2.6 + 2.6 * len(mosaic[0]), 6.4), 3.2 * len(mosaic)),
-        sharex=True,
-    )
-    for (gap, place), (top, bottom) in panels.items():
-        chosen = [row for row in rows if row["gap_m"] == gap and _place(row) == place]
-        beside = [row for row in (study or {}).get(gap, ()) if _place(row) == place]
-        for key, column in ((top, "k_N_per_m"), (bottom, "c_N_s_per_m")):
-            _study_curve(sheet, sheet.axes[key], beside, column)
-        _methods(sheet, sheet.axes[top], chosen, "k_N_per_m", (*METHODS,), level)
-        damped = (*OPEN_METHODS, "lscf", "broadband")
-        _methods(sheet, sheet.axes[bottom], chosen, "c_N_s_per_m", damped, level)
-        title = f"gap {gap_label(gap, outer_width(config.structure.section))}"
-        if len(places) > 1:
-            title = f"{place[0]} in {place[1]}" + (f", {gap * 1e3:.3g} mm" * (len(gaps) > 1))
-        sheet.axes[top].set_title(title)
-        sheet.mark(
-            sheet.axes[top],
-            "k_N_per_m",
-            contact_stiffness(model, place[0]),
-            "contact stiffness",
-            vertical=False,
-            color=GREY,
-            linestyle="--",
-            linewidth=1.0,
-            label="contact stiffness",
-        )
-    _alike(sheet, mosaic, config, len(places) == 1)
+    panels: dict[str, Panel] = {}
+    pairs = []
     for place in places:
-        _same_limits([sheet.axes[panels[gap, place][1]] for gap in gaps])
-    handles, labels = sheet.axes[mosaic[0][0]].get_legend_handles_labels()
-    for key, _ in panels.values():  # a method may be resolved at one gap only
-        for handle, label in zip(*sheet.axes[key].get_legend_handles_labels(), strict=True):
-            if label not in labels:
-                handles.append(handle)
-                labels.append(label)
-    sheet.figure.legend(
-        handles, labels, loc="outside lower center", ncols=(2, 4, 5)[min(len(mosaic[0]), 3) - 1]
-    )
-    return [sheet]
+        items = {
+            gap: _items(_of(rows, gap, place), _of((study or {}).get(gap, ()), None, place), level)
+            for gap in gaps
+        }
+        damping = extent([value for found in items.values() for value in _values(found["c"])])
+        for gap in gaps:
+            pair = tuple(f"{name}, {' in '.join(place)}, gap {gap:.5g} m" for name in "kc")
+            inner = bool(len(pairs) % _across(len(places) * len(gaps)))
+            loads = Axis(level, True, *extent([row["load_rms_N"] for row in rows], log=True))
+            limit = _limit(model, place)
+            lowest = config.identification.stiffness_range_N_per_m[0]
+            why = _why_empty(_of(rows, gap, place))
+            panels[pair[0]] = Panel(
+                Axis(level, True, loads.low, loads.high, bare=True),
+                Axis(COLUMNS["k"], True, 0.5 * lowest, HIGHEST_K, bare=inner),
+                [*items[gap]["k"], limit],
+                _title(config, gap, place, len(places), len(gaps)),
+                why,
+            )
+            bottom = Axis(COLUMNS["c"], False, *damping, bare=inner and len(places) == 1)
+            panels[pair[1]] = Panel(loads, bottom, items[gap]["c"], note=why)
+            pairs.append(pair)
+    blocks = _in_blocks(pairs)
+    return [
+        Plot(
+            "figure_13_equivalent_support",
+            "Equivalent stiffness and damping by every method",
+            caption,
+            panels,
+            blocks,
+            (max(2.6 + 2.6 * len(blocks[0]), 6.4), 3.2 * len(blocks)),
+            legend=(2, 4, 5)[min(len(blocks[0]), 3) - 1],
+        )
+    ]
 
 
-def _study_curve(sheet, axes, rows, column):
-    """Draw the median of a study's compared methods against load, and their range."""
+def _title(config, gap, place, places, gaps):
+    if places > 1:
+        return f"{place[0]} in {place[1]}" + (f", {gap * 1e3:.3g} mm" * (gaps > 1))
+    return f"gap {gap_label(gap, outer_width(config.structure.section))}"
+
+
+def _limit(model, place):
+    """Return the Mark of the contact stiffness of a group of supports."""
+    name = "contact stiffness"
+    value = contact_stiffness(model, place[0])
+    return Mark(name, "y", value, label=name, colour=GREY, line="--", width=1.0)
+
+
+def _values(items):
+    """Return all values of series along y."""
+    parts = [(item.y, item.low, item.high) for item in items]
+    return [value for part in parts for array in part if array is not None for value in array]
+
+
+def _items(rows, beside, level):
+    """Return {k, c: items} of the rows of one place, over the curve of a study."""
+    return {
+        quantity: [*_study_curve(beside, column), *_methods(rows, quantity, level)]
+        for quantity, column in COLUMNS.items()
+    }
+
+
+def _study_curve(rows, column):
+    """Return the median of a study's compared methods against load, with their range."""
     usable = [row for row in rows if row["method"] in COMPARED and np.isfinite(row[column])]
     loads = sorted({row["load_rms_N"] for row in usable})
     if not loads:
-        return
+        return []
     values = [[row[column] for row in usable if row["load_rms_N"] == load] for load in loads]
-    sheet.line(
-        axes,
-        ("load_rms_N", np.array(loads)),
-        (column, np.array([np.median(each) for each in values])),
-        "study",
-        [min(each) for each in values],
-        [max(each) for each in values],
-        color=GREY,
-        linewidth=1.6,
-        label="study, range of methods and seeds",
-        zorder=0,
-    )
+    middle, low, high = ([pick(each) for each in values] for pick in (np.median, np.min, np.max))
+    look = {"colour": GREY, "width": 1.6, "order": 0}
+    label = "study, range of methods and seeds"
+    return [Series("study", loads, middle, {}, low, high, True, "load_rms_N", label=label, **look)]
 
 
-def _methods(sheet, axes, rows, column, methods, level):
-    """Draw one quantity by every method: predictions as lines, others with their seed scatter."""
-    for method in methods:
-        label, colour, marker = METHODS[method]
+def _methods(rows, quantity, level):
+    """Return one quantity by every method: predictions as lines, others with their range."""
+    column, found = COLUMNS[quantity], []
+    for method in DRAWN[quantity]:
         chosen = [
-            row
+            {**row, level: row["load_rms_N"]}
             for row in rows
-            if row["method"] == method and (column != "k_N_per_m" or row[column] > 0.0)
+            if row["method"] == method and (quantity != "k" or row[column] > 0.0)
         ]
-        chosen = [{**row, level: row["load_rms_N"]} for row in chosen]
-        if method in PREDICTED:
-            place, value = medians(chosen, level, column)
-            if place.size:
-                sheet.line(
-                    axes,
-                    (level, place),
-                    (column, value),
-                    method,
-                    color=colour,
-                    linestyle="-" if method == "secant" else "--",
-                    marker=marker,
-                    markersize=3.5,
-                    linewidth=1.0,
-                    label=label,
-                    zorder=1,
-                )
+        if method not in PREDICTED:
+            found += over_seeds(chosen, level, column, method, **look_of(method))
             continue
-        over_seeds(
-            sheet,
-            axes,
-            chosen,
-            level,
-            column,
-            method,
-            color=colour,
-            marker=marker,
-            label=label,
-            linewidth=0.8,
-            markerfacecolor="white" if method in OPEN_METHODS else colour,
-            zorder=3 if method in OPEN_METHODS else 4,
-        )
-    if not axes.get_xlabel():
-        sheet.note(axes, _why_empty(rows), level, column)
+        place, value = medians(chosen, level, column)
+        found += [Series(method, place, value, **look_of(method))] if place.size else []
+    return found
 
 
 def _why_empty(rows):
@@ -171,44 +162,18 @@ def _why_empty(rows):
     return f"No method resolves it. {reasons[0] if reasons else ''}".strip()
 
 
+def _across(count):
+    """Return how many of some pairs of panels stand side by side."""
+    return -(-count // -(-count // MOST_COLUMNS))
+
+
 def _in_blocks(pairs):
-    """Return the mosaic of pairs of panels (top, bottom), side by side in blocks of two rows."""
-    count = len(pairs)
-    blocks = -(-count // MOST_COLUMNS)
-    columns = -(-count // blocks)
-    rows = []
-    for first in range(0, count, columns):
-        block = pairs[first : first + columns]
-        rows += [[pair[row] for pair in block] + ["."] * (columns - len(block)) for row in (0, 1)]
+    """Return the rows of pairs of panels (top, bottom), side by side in blocks of two rows."""
+    across, rows = _across(len(pairs)), []
+    for first in range(0, len(pairs), across):
+        block = pairs[first : first + across]
+        rows += [[pair[row] for pair in block] + ["."] * (across - len(block)) for row in (0, 1)]
     return rows
-
-
-def _alike(sheet, mosaic, config, one_place):
-    """Give all panels the same loads and stiffnesses, labels at the outside only.
-
-    one_place: whether all panels are of one group of supports, with comparable dampings.
-    """
-    lowest = config.identification.stiffness_range_N_per_m[0]
-    tops = [sheet.axes[key] for row in mosaic[::2] for key in row if key != "."]
-    for axes in tops:
-        axes.set_xscale("log")
-        axes.set_yscale("log")
-        axes.set_ylim(0.5 * lowest, 2e7)
-        axes.set_xlabel("")
-    _same_limits(tops)
-    for row in mosaic:
-        for key in (key for key in row[1:] if key != "."):
-            sheet.axes[key].set_ylabel("")
-            if one_place or sheet.axes[key] in tops:
-                sheet.axes[key].tick_params(labelleft=False)
-    sheet.figure.align_ylabels([sheet.axes[row[0]] for row in mosaic])
-
-
-def _same_limits(group):
-    """Give some axes the same limits along y."""
-    limits = [axes.get_ylim() for axes in group]
-    for axes in group:
-        axes.set_ylim(min(low for low, _ in limits), max(high for _, high in limits))
 
 
 def _place(row):
@@ -221,8 +186,13 @@ def _places(rows):
     return list(dict.fromkeys(map(_place, rows)))
 
 
+def _of(rows, gap, place):
+    """Return the rows of a place at a gap, at all gaps where it is None."""
+    return [row for row in rows if _place(row) == place and gap in (None, row["gap_m"])]
+
+
 def collapse(config, model, rows):
-    """Return the Sheet of k and c of all gaps against load over gap.
+    """Return the Plot of k and c of all gaps against load over gap.
 
     rows: the consistency table, list of {column: value}.
     """
@@ -236,28 +206,44 @@ def collapse(config, model, rows):
         " stiffness, of all gaps."
     )
     places = _places(rows)
-    keys = {place: tuple(f"{name}, {' in '.join(place)}" for name in "kc") for place in places}
-    sheet = Sheet(
-        "collapse",
-        _collapse_title(rows),
-        caption,
-        [list(pair) for pair in keys.values()],
-        size=(7.6, 1.0 + 3.2 * len(places)),
-    )
     table = [{**row, "load_over_gap_N_per_m": row["load_over_gap"]} for row in rows]
-    for place, (top, bottom) in keys.items():
+    lowest = config.identification.stiffness_range_N_per_m[0]
+    panels: dict[str, Panel] = {}
+    for place in places:
         own = [row for row in table if _place(row) == place]
-        axes = (sheet.axes[top], sheet.axes[bottom])
-        _collapse_of(sheet, axes, config, own)
-        axes[0].set_ylim(
-            0.5 * config.identification.stiffness_range_N_per_m[0], 2.5 * contact_stiffness(model)
-        )
         of = "" if len(places) == 1 else f", {' in '.join(place)}"
-        axes[0].set_title(f"stiffness{of}")
-        axes[1].set_title("damping on top of the modal damping" if not of else f"damping{of}")
-    handles, labels = axes[0].get_legend_handles_labels()
-    sheet.figure.legend(handles, labels, loc="outside lower center", ncols=3)
-    return [sheet]
+        why = _why_empty(own)
+        highest = 2.5 * contact_stiffness(model)
+        stiffness = [*_of_gaps(config, own, "k"), *_predictions(own)]
+        damping = _of_gaps(config, own, "c")
+        shown = [value for item in [*stiffness, *damping] for value in item.x]
+        loads = Axis("load_over_gap_N_per_m", True, *extent(shown, log=True))
+        panels[f"k, {' in '.join(place)}"] = Panel(
+            loads,
+            Axis(COLUMNS["k"], True, 0.5 * lowest, highest),
+            stiffness,
+            f"stiffness{of}",
+            why,
+        )
+        panels[f"c, {' in '.join(place)}"] = Panel(
+            loads,
+            Axis(COLUMNS["c"]),
+            [*damping, Mark("", "y", 0.0, colour=GREY, width=0.8)],
+            f"damping{of}" if of else "damping on top of the modal damping",
+            why,
+        )
+    keys = list(panels)
+    return [
+        Plot(
+            "collapse",
+            _collapse_title(rows),
+            caption,
+            panels,
+            [keys[first : first + 2] for first in range(0, len(keys), 2)],
+            (7.6, 1.0 + 3.2 * len(places)),
+            legend=3,
+        )
+    ]
 
 
 def _collapse_title(rows):
@@ -272,46 +258,35 @@ def _collapse_title(rows):
     return f"k of the gaps at equal load / gap: within {100.0 * (max(ratios) - 1.0):.0f} %"
 
 
-def _collapse_of(sheet, axes, config, rows):
-    """Draw k and c of one group of supports and direction against load over gap."""
+def _of_gaps(config, rows, quantity):
+    """Return the values of the compared methods at each gap."""
+    found = []
     for index, gap in enumerate(sorted({row["gap_m"] for row in rows}, reverse=True)):
-        compared = [row for row in rows if row["gap_m"] == gap and row["method"] in COMPARED]
-        for place, column in zip(axes, ("k_N_per_m", "c_N_s_per_m"), strict=True):
-            over_seeds(
-                sheet,
-                place,
-                compared,
-                "load_over_gap_N_per_m",
-                column,
-                "identified",
-                tags=("gap_m", "load_rms_N"),
-                color=GAP_COLOURS[index % len(GAP_COLOURS)],
-                marker=GAP_MARKERS[index % len(GAP_MARKERS)],
-                linestyle="none",
-                label=f"gap {gap_label(gap, outer_width(config.structure.section))}",
-            )
-    for method, colour, dash in (("statistical_linearisation", PINK, "--"), ("secant", BLACK, "-")):
-        place, value = medians(
-            [row for row in rows if row["method"] == method and row["k_N_per_m"] > 0.0],
+        found += over_seeds(
+            [row for row in rows if row["gap_m"] == gap and row["method"] in COMPARED],
             "load_over_gap_N_per_m",
-            "k_N_per_m",
+            COLUMNS[quantity],
+            "identified",
+            tags=("gap_m", "load_rms_N"),
+            line="",
+            label=f"gap {gap_label(gap, outer_width(config.structure.section))}",
+            **look_of_gap(index),
         )
-        if place.size:
-            sheet.line(
-                axes[0],
-                ("load_over_gap_N_per_m", place),
-                ("k_N_per_m", value),
-                method,
-                color=colour,
-                linestyle=dash,
-                linewidth=1.2,
-                label=METHODS[method][0],
-                zorder=1,
-            )
-    for place, column in zip(axes, ("k_N_per_m", "c_N_s_per_m"), strict=True):
-        if not place.get_xlabel():
-            sheet.note(place, _why_empty(rows), "load_over_gap_N_per_m", column)
-        place.set_xscale("log")
-    axes[0].set_yscale("log")
-    axes[1].axhline(0.0, color=GREY, linewidth=0.8)
-    axes[1].sharex(axes[0])
+    return found
+
+
+def look_of_gap(index: int) -> dict[str, Any]:
+    """Return colour and marker of the curve of a gap."""
+    colours, markers = GAP_COLOURS, GAP_MARKERS
+    return {"colour": colours[index % len(colours)], "marker": markers[index % len(markers)]}
+
+
+def _predictions(rows):
+    """Return k by the methods that need no response."""
+    found = []
+    for method in PREDICTED:
+        known = [row for row in rows if row["method"] == method and row["k_N_per_m"] > 0.0]
+        place, value = medians(known, "load_over_gap_N_per_m", COLUMNS["k"])
+        look = look_of(method) | {"marker": "", "width": 1.2}
+        found += [Series(method, place, value, **look)] if place.size else []
+    return found

@@ -51,7 +51,7 @@ def study_beside(config, folder):
 
 
 def measured_figures(found, beside=None):
-    """Return the Sheets of a MeasuredSupports; beside: StudyBeside or None."""
+    """Return the Plots of a MeasuredSupports; beside: StudyBeside or None."""
     config, model = found.config, found.model
     responses = gather(config, model, found.spectra.values())
     gap = shown_gap(config)

@@ -2,25 +2,16 @@
 
 from __future__ import annotations
 
-import numpy as np
-from matplotlib.cm import ScalarMappable
+from typing import Any
 
-from vibroimpact.figures.sheet import Sheet
-from vibroimpact.figures.style import (
-    BLACK,
-    GAP_COLOURS,
-    GAP_MARKERS,
-    ORANGE,
-    ORDERED,
-    PALE,
-    gap_label,
-    number,
-    ordered_colours,
-    ordered_norm,
-)
+import numpy as np
+
+from vibroimpact.figures.plot import Axis, ColourBar, Map, Panel, Plot, Series, Signs, extent
+from vibroimpact.figures.style import BLACK, ORANGE, gap_label, number, ordered_colours
 from vibroimpact.geometry.sections import outer_width
 from vibroimpact.linear.responses import psd_family
 
+from .equivalent import look_of_gap
 from .linear_limits import contact_stiffness, linear_modes, shown_band
 from .psd_table import driven_sensor, unit_force_psd
 from .seed_scatter import over_seeds
@@ -32,7 +23,7 @@ LINEAR_STIFFNESS_STEPS = 90
 
 
 def figure_06_levels(config, model, responses, level="load_rms_N"):
-    """Return the Sheet of PSD / load² over frequency and load, at two points.
+    """Return the Plot of PSD / load² over frequency and load, at two points.
 
     They are the response point and the broadband point.
 
@@ -52,45 +43,46 @@ def figure_06_levels(config, model, responses, level="load_rms_N"):
         " stiffening by contact. Triangles: modes of the driven plane of the free tube (bottom) and"
         " in full bilateral contact (top)."
     )
-    sheet = Sheet(
-        "figure_06_levels",
-        f"Peaks of the response against {'load' if word == 'load' else 'its level'}",
-        caption,
-        [points],
-        size=(7.6, 4.4),
-        sharey=True,
-    )
     band = shown_band(model, responses.frequency[-1])
     kept = _inside(responses.frequency, band)
-    psd = {
-        point: responses.psd["displacement", driven_sensor(config, point), "mean"][:, kept]
+    frequency, loads = responses.frequency[kept], responses.load
+    levels = {
+        point: _decibels(
+            responses.psd["displacement", driven_sensor(config, point), "mean"][:, kept]
+            / loads[:, None] ** 2
+        )
         for point in points
     }
-    levels = {
-        point: _decibels(values / responses.load[:, None] ** 2) for point, values in psd.items()
-    }
     top = max(values.max() for values in levels.values())
-    for point, values in levels.items():
-        axes = sheet.axes[point]
-        axes.set_title(driven_sensor(config, point))
-        mesh = sheet.map(
-            axes,
-            ("frequency_Hz", responses.frequency[kept]),
-            (level, responses.load),
-            (column, values),
-            f"mean PSD / {word}²",
-            vmin=top - DYNAMIC_RANGE_DB,
-            vmax=top,
+    ends = top - DYNAMIC_RANGE_DB, top
+    curve = f"mean PSD / {word}²"
+    panels = {
+        point: Panel(
+            Axis("frequency_Hz"),
+            Axis(level, True),
+            [Map(curve, frequency, loads, values, column, *ends), *_modes(model, band)],
+            driven_sensor(config, point),
         )
-        _mark_modes(sheet, axes, model, band)
-        axes.label_outer()
-    _legend_of_modes(sheet, axes)
-    sheet.colour_bar(mesh, list(sheet.axes.values()), column, extend="min")
-    return [sheet]
+        for point, values in levels.items()
+    }
+    title = f"Peaks of the response against {'load' if word == 'load' else 'its level'}"
+    bar = ColourBar(column, *ends, ends="min")
+    return [
+        Plot(
+            "figure_06_levels",
+            title,
+            caption,
+            panels,
+            size=(7.6, 4.4),
+            share="y",
+            legend=2,
+            colour_bars=[bar],
+        )
+    ]
 
 
 def figure_07_overlay_of_loads(config, model, responses):
-    """Return the Sheet of PSD / load² at the broadband point for all loads.
+    """Return the Plot of PSD / load² at the broadband point for all loads.
 
     The linear responses at both ends are drawn with them.
     """
@@ -103,59 +95,47 @@ def figure_07_overlay_of_loads(config, model, responses):
         " N/m (solid) under the same force. Low loads follow the first, high loads approach the"
         " second, with wider peaks and without its anti-resonances."
     )
-    sheet = Sheet(
-        "figure_07_overlay_of_loads",
-        "Spectra of all loads between the linear limits",
-        caption,
-        size=(7.6, 4.6),
-    )
-    axes = sheet.axes["main"]
-    axes.set_title(f"{sensor}, PSD of displacement / load²")
     band = shown_band(model, responses.frequency[-1])
     kept = _inside(responses.frequency, band)
-    frequency = responses.frequency[kept]
-    colours = ordered_colours(responses.load)
-    for load, psd in zip(
-        responses.load, responses.psd["displacement", sensor, "mean"], strict=True
-    ):
-        sheet.line(
-            axes,
-            ("frequency_Hz", frequency),
-            ("psd_per_load2_m2_per_N2_per_Hz", psd[kept] / load**2),
-            "non-linear",
-            tags={"load_rms_N": load},
-            color=colours[load],
-            linewidth=0.9,
-            alpha=0.9,
-        )
+    frequency, loads = responses.frequency[kept], responses.load
+    levels = responses.psd["displacement", sensor, "mean"][:, kept] / loads[:, None] ** 2
+    colours, items = ordered_colours(loads), []
+    for load, psd in zip(loads, levels, strict=True):
+        look = {"colour": colours[load], "width": 0.9, "alpha": 0.9}
+        items.append(Series("non-linear", frequency, psd, {"load_rms_N": load}, **look))
     shape = model.sensor_shapes[:, model.sensor_names.index(sensor)]
     force = unit_force_psd(config, frequency)
     force[force == 0.0] = np.nan  # without force there is no linear line to draw
-    for k, dash in ((FREE_K, (0, (4, 2))), (stiff, "-")):
+    for k, line in ((FREE_K, "--"), (stiff, "-")):
         psd = psd_family(model, [k], [0.0], frequency, shape)[0, 0] * force
-        sheet.line(
-            axes,
-            ("frequency_Hz", frequency),
-            ("psd_per_load2_m2_per_N2_per_Hz", psd),
-            "linear",
-            tags={"k_N_per_m": k},
-            color=BLACK,
-            linestyle=dash,
-            linewidth=1.3,
-            label=f"linear, k = {number(k)} N/m",
-            zorder=5,
+        look: dict[str, Any] = {"line": line, "width": 1.3, "order": 5, "colour": BLACK}
+        look["label"] = f"linear, k = {number(k)} N/m"
+        items.append(Series("linear", frequency, psd, {"k_N_per_m": k}, **look))
+    lowest = max(0.1 * levels.min(), 1e-13 * levels.max())
+    panel = Panel(
+        Axis("frequency_Hz", False, *band),
+        Axis("psd_per_load2_m2_per_N2_per_Hz", True, lowest, 4.0 * levels.max()),
+        items,
+        f"{sensor}, PSD of displacement / load²",
+        legend="upper right",
+    )
+    title = "Spectra of all loads between the linear limits"
+    ends = (loads[0], loads[-1]) if len(loads) > 1 else extent(loads, log=True)
+    bar = ColourBar("load_rms_N", *ends, log=True, curves=True)
+    return [
+        Plot(
+            "figure_07_overlay_of_loads",
+            title,
+            caption,
+            {"main": panel},
+            size=(7.6, 4.6),
+            colour_bars=[bar],
         )
-    axes.set_yscale("log")
-    axes.set_xlim(band)
-    levels = responses.psd["displacement", sensor, "mean"][:, kept] / responses.load[:, None] ** 2
-    axes.set_ylim(max(0.1 * levels.min(), 1e-13 * levels.max()), 4.0 * levels.max())
-    sheet.legend(axes, loc="upper right")
-    _load_bar(sheet, axes, responses.load)
-    return [sheet]
+    ]
 
 
 def figure_08_load_and_stiffness(config, model, responses):
-    """Return the Sheet of the non-linear PSD against load and the linear PSD against stiffness."""
+    """Return the Plot of the non-linear PSD against load and the linear PSD against stiffness."""
     sensor = driven_sensor(config, config.identification.broadband.point)
     caption = (
         f"PSD of displacement at {sensor} divided by the square of the load. Left: simulated with"
@@ -165,19 +145,11 @@ def figure_08_load_and_stiffness(config, model, responses):
         " (dark) fade. Same colours on both sides. Triangles: modes of the driven plane of the"
         " free tube (bottom) and in full contact (top)."
     )
-    sheet = Sheet(
-        "figure_08_load_and_stiffness",
-        "Load with contact beside stiffness without",
-        caption,
-        [["load", "stiffness"]],
-        size=(7.6, 4.4),
-    )
     band = shown_band(model, responses.frequency[-1])
     kept = _inside(responses.frequency, band)
-    frequency = responses.frequency[kept]
-    measured = _decibels(
-        responses.psd["displacement", sensor, "mean"][:, kept] / responses.load[:, None] ** 2
-    )
+    frequency, loads = responses.frequency[kept], responses.load
+    psd = responses.psd["displacement", sensor, "mean"][:, kept]
+    measured = _decibels(psd / loads[:, None] ** 2)
     stiffness = np.geomspace(
         0.1 * config.identification.stiffness_range_N_per_m[0],
         2.5 * contact_stiffness(model),
@@ -185,90 +157,78 @@ def figure_08_load_and_stiffness(config, model, responses):
     )
     shape = model.sensor_shapes[:, model.sensor_names.index(sensor)]
     coarse = frequency[::2]
-    linear = psd_family(model, stiffness, [0.0], coarse, shape)[:, 0] * unit_force_psd(
-        config, coarse
-    )
-    top = measured.max()
-    sides = (
-        (
-            "load",
+    family = psd_family(model, stiffness, [0.0], coarse, shape)[:, 0]
+    linear = _decibels(family * unit_force_psd(config, coarse))
+    ends, curve = (measured.max() - DYNAMIC_RANGE_DB, measured.max()), "PSD / load²"
+    modes = _modes(model, band)
+    panels = {
+        "load": Panel(
+            Axis("frequency_Hz"),
+            Axis("load_rms_N", True),
+            [Map(curve, frequency, loads, measured, "psd_dB", *ends), *modes],
             "non-linear, against the load",
-            ("load_rms_N", responses.load),
-            frequency,
-            measured,
         ),
-        (
-            "stiffness",
+        "stiffness": Panel(
+            Axis("frequency_Hz"),
+            Axis("support_stiffness_N_per_m", True),
+            [Map(curve, coarse, stiffness, linear, "psd_dB", *ends), *modes],
             "linear, against the bilateral stiffness",
-            ("support_stiffness_N_per_m", stiffness),
-            coarse,
-            _decibels(linear),
         ),
+    }
+    title, bar = (
+        "Load with contact beside stiffness without",
+        ColourBar("psd_dB", *ends, ends="both"),
     )
-    for name, title, vertical, across, values in sides:
-        axes = sheet.axes[name]
-        axes.set_title(title)
-        mesh = sheet.map(
-            axes,
-            ("frequency_Hz", across),
-            vertical,
-            ("psd_dB", values),
-            "PSD / load²",
-            vmin=top - DYNAMIC_RANGE_DB,
-            vmax=top,
+    return [
+        Plot(
+            "figure_08_load_and_stiffness",
+            title,
+            caption,
+            panels,
+            size=(7.6, 4.4),
+            legend=2,
+            colour_bars=[bar],
         )
-        _mark_modes(sheet, axes, model, band)
-    _legend_of_modes(sheet, axes)
-    sheet.colour_bar(mesh, list(sheet.axes.values()), "psd_dB", extend="both")
-    return [sheet]
+    ]
 
 
 def in_plane_share(config, responses):
-    """Return the Sheet of the in-plane share of the motion against load, for every gap."""
+    """Return the Plot of the in-plane share of the motion against load, for every gap."""
+    point = config.identification.response_point
     caption = (
         "Mean square of the displacement in the other sensor directions over that in the driven"
-        f" one, at {config.identification.response_point}, against load over gap: median and range"
+        f" one, at {point}, against load over gap: median and range"
         " over seeds. The drive acts out of the plane only; below contact the share is that of the"
         " seeded imperfection alone (nothing), from a level on the motion leaves its plane by"
         " itself because contact turns it."
     )
-    sheet = Sheet(
-        "in_plane_share",
-        "Motion across the driven direction",
-        caption,
-        size=(7.6, 4.2),
-    )
-    axes = sheet.axes["main"]
-    point = config.identification.response_point
-    axes.set_title(f"in-plane share of the displacement at {point}")
     rows = [row for row in responses.share if row["point"] == point]
-    diameter = outer_width(config.structure.section)
+    items, diameter = [], outer_width(config.structure.section)
     for index, gap in enumerate(sorted({row["gap_m"] for row in rows}, reverse=True)):
         chosen = [
             {**row, "load_over_gap_N_per_m": row["load_rms_N"] / gap}
             for row in rows
             if row["gap_m"] == gap
         ]
-        over_seeds(
-            sheet,
-            axes,
+        look = look_of_gap(index) | {"label": f"gap {gap_label(gap, diameter)}"}
+        items += over_seeds(
             chosen,
             "load_over_gap_N_per_m",
             "in_plane_share_dB",
             "in-plane share",
             tags=("gap_m", "load_rms_N"),
-            color=GAP_COLOURS[index % len(GAP_COLOURS)],
-            marker=GAP_MARKERS[index % len(GAP_MARKERS)],
-            label=f"gap {gap_label(gap, diameter)}",
+            **look,
         )
-    if not rows:
-        sheet.note(
-            axes, "sensors in one direction only", "load_over_gap_N_per_m", "in_plane_share_dB"
-        )
-    axes.set_xscale("log")
-    axes.set_ylim(bottom=max(axes.get_ylim()[0], LOWEST_SHARE_DB))
-    sheet.legend(axes, loc="lower right")
-    return [sheet]
+    lowest = extent([value for item in items for value in item.low])[0]
+    panel = Panel(
+        Axis("load_over_gap_N_per_m", True),
+        Axis("in_plane_share_dB", low=max(lowest, LOWEST_SHARE_DB)),
+        items,
+        f"in-plane share of the displacement at {point}",
+        "sensors in one direction only",
+        legend="lower right",
+    )
+    return [Plot("in_plane_share", "Motion across the driven direction", caption, {"main": panel})]
 
 
 def _gap_words(config, responses):
@@ -285,41 +245,15 @@ def _decibels(values):
     return 10.0 * np.log10(np.maximum(values, np.finfo(float).tiny))
 
 
-def _mark_modes(sheet, axes, model, band):
-    """Mark the modes of the driven plane: free below a map, in full contact above it."""
-    for name, k, height, style in (
-        ("free modes", 0.0, 0.012, {"marker": "^", "color": "white"}),
-        (
-            "modes in full contact",
-            contact_stiffness(model),
-            0.988,
-            {"marker": "v", "color": ORANGE},
-        ),
+def _modes(model, band):
+    """Return the modes of the driven plane: free below a map, in full contact above it."""
+    stiff, found = contact_stiffness(model), []
+    for name, k, height, marker, colour in (
+        ("free modes", 0.0, 0.012, "^", "white"),
+        ("modes in full contact", stiff, 0.988, "v", ORANGE),
     ):
         values = linear_modes(model, k, 12)
         values = values[(values > band[0]) & (values < band[1])]
-        sheet.record(axes, name, frequency_Hz=values)
-        axes.plot(
-            values,
-            np.full(values.size, height),
-            transform=axes.get_xaxis_transform(),
-            linestyle="none",
-            markersize=7,
-            markeredgecolor=BLACK,
-            markeredgewidth=0.6,
-            clip_on=False,
-            zorder=6,
-            label=name,
-            **style,
-        )
-
-
-def _legend_of_modes(sheet, axes):
-    """Add the legend of the marks of a map, beside the title of the figure."""
-    handles, labels = axes.get_legend_handles_labels()
-    sheet.figure.legend(handles, labels, loc="upper right", ncols=2, facecolor=PALE, framealpha=1.0)
-
-
-def _load_bar(sheet, axes, loads):
-    """Add the colour bar of curves coloured by load."""
-    return sheet.colour_bar(ScalarMappable(ordered_norm(loads), ORDERED), axes, "load_rms_N")
+        look = {"label": name, "marker": marker, "colour": colour, "size": 7, "order": 6}
+        found.append(Signs(name, values, height, **look))
+    return found

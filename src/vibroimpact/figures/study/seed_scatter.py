@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
+from vibroimpact.figures.plot import Series
 
-def over_seeds(sheet, axes, rows, x_column, y_column, curve, tags=(), **style):
-    """Draw the median of y_column for each value of x_column, with a bar over the range.
 
-    rows: list of {column: value}, SI; values that are not finite are left out (unresolved).
+def over_seeds(rows, x_column, y_column, curve, tags=(), **look: Any) -> list[Series]:
+    """Return the Series of the median of y_column for each value of x_column, with its range.
+
+    rows: list of {column: value}, SI; values that are not finite are left out (unresolved). The
+        list is empty without any.
     tags: further recorded columns, constant at each x.
-
-    Returns the errorbar container, or None without any value.
     """
     usable = [row for row in rows if np.isfinite(row[y_column])]
     if not usable:
-        return None
+        return []
     places = sorted({row[x_column] for row in usable})
     groups = [[row for row in usable if row[x_column] == place] for place in places]
     values = [np.array([row[y_column] for row in group], dtype=float) for group in groups]
@@ -24,16 +27,8 @@ def over_seeds(sheet, axes, rows, x_column, y_column, curve, tags=(), **style):
     )
     beside = {tag: np.array([group[0][tag] for group in groups]) for tag in tags}
     beside["values"] = np.array([len(group) for group in values])
-    return sheet.bars(
-        axes,
-        (x_column, np.array(places)),
-        (y_column, middle),
-        curve,
-        low,
-        high,
-        tags=beside,
-        **style,
-    )
+    columns = {"x_column": x_column, "y_column": y_column}
+    return [Series(curve, np.array(places), middle, beside, low, high, **{**columns, **look})]
 
 
 def medians(rows, x_column, y_column):

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
-from vibroimpact.figures.sheet import Sheet
+from vibroimpact.figures.plot import Axis, Item, Mark, Panel, Plot, Series, Span, Text
 from vibroimpact.figures.style import (
     BLACK,
     BLUE,
@@ -22,12 +24,13 @@ from .linear_limits import contact_stiffness
 from .seed_scatter import over_seeds
 
 SHOWN_SHAPES = 6
-SHOWN_VALUES = 5
+ORDERS = ("second", "third", "fourth", "fifth")
 LOWEST_VALUE = 1.0e-6  # of the first: below is the rounding of the stored spectra
+HALF_SUPPORT_m = 0.012  # of a support, as it is drawn
 
 
 def figure_10_shapes(config, model, curves, rows):
-    """Return the Sheet of the deflection shapes of one gap, their MAC and their quadrature part.
+    """Return the Plot of the deflection shapes of one gap, their MAC and their quadrature part.
 
     The MAC is with the linear tube. curves: {Case: Dataset}; rows: table rows of that gap.
     """
@@ -43,22 +46,9 @@ def figure_10_shapes(config, model, curves, rows):
         " largest value on this grid. Bottom right: size of the part in quadrature over that in"
         " phase: zero for a motion that is one real shape."
     )
-    sheet = Sheet(
-        "figure_10_shapes",
-        "Deflection shape against load",
-        caption,
-        [["shape", "shape"], ["mac", "quadrature"]],
-        size=(7.6, 6.2),
-        height_ratios=(1.35, 1.0),
-    )
     found = {case: dataset for case, dataset in curves.items() if "ods_re" in dataset}
-    loads = [
-        load
-        for load in spread_loads(rows, SHOWN_SHAPES)
-        if any(case.load_rms_N == load for case in found)
-    ]
-    _shapes(sheet, sheet.axes["shape"], model, found, loads)
-    _likeness(sheet, sheet.axes["mac"], found, loads)
+    there = {case.load_rms_N for case in found}
+    loads = [load for load in spread_loads(rows, SHOWN_SHAPES) if load in there]
     quadrature = [
         {
             "load_rms_N": case.load_rms_N,
@@ -66,107 +56,97 @@ def figure_10_shapes(config, model, curves, rows):
         }
         for case, dataset in found.items()
     ]
-    over_seeds(
-        sheet,
-        sheet.axes["quadrature"],
-        quadrature,
-        "load_rms_N",
-        "quadrature",
-        "quadrature",
-        color=BLUE,
-        marker="o",
-    )
-    sheet.axes["quadrature"].set_title("part in quadrature")
-    sheet.axes["quadrature"].set_xscale("log")
-    sheet.axes["quadrature"].set_ylim(bottom=0.0)
-    return [sheet]
+    look = {"colour": BLUE, "marker": "o"}
+    points = over_seeds(quadrature, "load_rms_N", "quadrature", "quadrature", **look)
+    axes = Axis("load_rms_N", True), Axis("quadrature", low=0.0)
+    panels = {
+        "shape": _shapes(model, found, loads),
+        "mac": _likeness(found, loads),
+        "quadrature": Panel(*axes, points, "part in quadrature"),
+    }
+    return [
+        Plot(
+            "figure_10_shapes",
+            "Deflection shape against load",
+            caption,
+            panels,
+            [["shape", "shape"], ["mac", "quadrature"]],
+            (7.6, 6.2),
+            heights=(1.35, 1.0),
+        )
+    ]
 
 
-def _shapes(sheet, axes, model, found, loads):
-    """Draw the shapes of some loads, the linear tube's limits and the supports."""
-    axes.set_title("shape along the tube")
+def support_places(model: Any) -> np.ndarray:
+    """Return (support,) arc lengths in m of the middles of the supports, on the shape line."""
+    middles = [
+        model.contact_position[model.support_of_point == index].mean(axis=0)
+        for index in range(len(model.support_names))
+    ]
+    nearest = [
+        np.argmin(np.linalg.norm(model.line_positions - middle, axis=1)) for middle in middles
+    ]
+    return model.line_arc_length[np.array(nearest, dtype=int)]
+
+
+def linear_shape(model: Any, k: float) -> np.ndarray:
+    """Return the first mode (line_point,) of the linear tube, its largest component +1.
+
+    k: N/m per support.
+    """
+    return _unit(first_mode_shape(model, k))
+
+
+def _supports(model):
+    """Return the supports as shaded ranges with their names."""
+    items, few = [], len(model.support_names) <= 3
+    for name, place in zip(model.support_names, support_places(model), strict=True):
+        items.append(Span("x", place - HALF_SUPPORT_m, place + HALF_SUPPORT_m, PALE))
+        look = {"of_panel": "y", "colour": GREY, "rotation": 0.0 if few else 90.0}
+        look |= {"align": ("left" if few else "center", "top"), "shift": (4 * few, 0)}
+        items.append(Text(f"support {name}" if few else name, place, 0.98, **look))
+    return items
+
+
+def _shapes(model, found, loads):
+    """Return the Panel of the shapes of some loads, the linear tube's limits and the supports."""
     place = model.line_arc_length
-    few = len(model.support_names) <= 3
-    for number_of_support in np.unique(model.support_of_point):
-        middle = model.contact_position[model.support_of_point == number_of_support].mean(axis=0)
-        nearest = place[np.argmin(np.linalg.norm(model.line_positions - middle, axis=1))]
-        axes.axvspan(nearest - 0.012, nearest + 0.012, color=PALE, linewidth=0, zorder=0)
-        axes.annotate(
-            f"support {model.support_names[number_of_support]}"
-            if few
-            else model.support_names[number_of_support],
-            (nearest, 0.98),
-            xycoords=("data", "axes fraction"),
-            xytext=(4, 0) if few else (0, 0),
-            textcoords="offset points",
-            rotation=0.0 if few else 90.0,
-            ha="left" if few else "center",
-            fontsize=8,
-            color=GREY,
-            va="top",
-        )
-    for k, name, dash in (
-        (0.0, "linear, free", (0, (4, 2))),
-        (contact_stiffness(model), "linear, in full contact", "-"),
-    ):
-        sheet.line(
-            axes,
-            ("arc_length_m", place),
-            ("shape", _unit(first_mode_shape(model, k))),
-            name,
-            color=BLACK,
-            linestyle=dash,
-            label=name,
-            linewidth=1.0,
-            zorder=5,
-        )
+    items: list[Item] = _supports(model)
+    stiff = contact_stiffness(model)
+    for k, name, line in ((0.0, "linear, free", "--"), (stiff, "linear, in full contact", "-")):
+        look = {"colour": BLACK, "line": line, "width": 1.0, "order": 5, "label": name}
+        items.append(Series(name, place, linear_shape(model, k), **look))
     colours = ordered_colours(loads or [1.0])
     for load in loads:
-        shapes = np.array(
-            [
-                _unit(dataset["ods_re"].values)
-                for case, dataset in found.items()
-                if case.load_rms_N == load
-            ]
-        )
-        sheet.line(
-            axes,
-            ("arc_length_m", place),
-            ("shape", _unit(np.median(shapes, axis=0))),
-            "ods",
-            low=shapes.min(axis=0),
-            high=shapes.max(axis=0),
-            tags={"load_rms_N": load},
-            color=colours[load],
-            marker=".",
-            label=f"{load:.3g} N",
-        )
-    axes.axhline(0.0, color=GREY, linewidth=0.8)
-    sheet.legend(axes, loc="lower center", bbox_to_anchor=(0.5, 0.08))
+        shapes = [
+            _unit(dataset["ods_re"].values)
+            for case, dataset in found.items()
+            if case.load_rms_N == load
+        ]
+        low, high = np.min(shapes, axis=0), np.max(shapes, axis=0)
+        middle, tags = _unit(np.median(shapes, axis=0)), {"load_rms_N": load}
+        look = {"colour": colours[load], "marker": ".", "label": f"{load:.3g} N"}
+        items.append(Series("ods", place, middle, tags, low, high, True, **look))
+    items.append(Mark("", "y", 0.0, colour=GREY, width=0.8))
+    axes = Axis("arc_length_m"), Axis("shape")
+    return Panel(*axes, items, "shape along the tube", legend="center")
 
 
-def _likeness(sheet, axes, found, loads):
-    """Draw the MAC against the stiffness for some loads; a note where supports differ."""
-    axes.set_title("MAC with the linear tube's shape")
-    lowest = min((case.seed for case in found), default=0)
+def _likeness(found, loads):
+    """Return the Panel of the MAC against the stiffness; a note where supports differ."""
+    lowest, items = min((case.seed for case in found), default=0), []
     colours = ordered_colours(loads or [1.0])
     for case, dataset in found.items():
         if case.load_rms_N in loads and case.seed == lowest and "mac_k" in dataset:
             k, mac = dataset["mac_k"].values, dataset["mac"].values
-            sheet.line(
-                axes,
-                ("support_stiffness_N_per_m", k),
-                ("mac", mac),
-                "MAC",
-                tags={"load_rms_N": case.load_rms_N},
-                color=colours[case.load_rms_N],
-            )
-            best = int(np.argmax(mac))
-            axes.plot(k[best], mac[best], marker="o", color=colours[case.load_rms_N])
-    axes.set_xscale("log")
-    if not axes.lines:
-        note = "no shape found" if not loads else "each support has its own stiffness"
-        sheet.note(axes, note, "support_stiffness_N_per_m", "mac")
+            colour, tags = colours[case.load_rms_N], {"load_rms_N": case.load_rms_N}
+            items.append(Series("MAC", k, mac, tags, colour=colour))
+            best = [int(np.argmax(mac))]
+            look = {"line": "", "marker": "o", "colour": colour}
+            items.append(Series("", k[best], mac[best], **look))
+    note = "each support has its own stiffness" if loads else "no shape found"
+    axes = Axis("support_stiffness_N_per_m", True), Axis("mac")
+    return Panel(*axes, items, "MAC with the linear tube's shape", note)
 
 
 def _unit(shape):
@@ -175,7 +155,7 @@ def _unit(shape):
 
 
 def figure_11_singular_values(config, curves):
-    """Return the Sheet of the singular values over the band of the main peak, against load."""
+    """Return the Plot of the singular values over the band of the main peak, against load."""
     caption = (
         "Singular values of the spectra along the tube over the band above 1/25 of the main peak,"
         " divided by the first, gap"
@@ -184,15 +164,8 @@ def figure_11_singular_values(config, curves):
         " linear tube does near a resonance; where others rise, in the transition, no single shape"
         " describes the motion."
     )
-    sheet = Sheet(
-        "figure_11_singular_values",
-        "Size of the other shapes beside the first",
-        caption,
-        size=(7.6, 4.2),
-    )
-    axes = sheet.axes["main"]
-    axes.set_title("singular values relative to the first")
-    for order in range(1, SHOWN_VALUES):
+    items = []
+    for order, word in enumerate(ORDERS, start=1):
         values = [
             {
                 "load_rms_N": case.load_rms_N,
@@ -202,32 +175,18 @@ def figure_11_singular_values(config, curves):
             for case, dataset in curves.items()
             if "singular_value" in dataset
         ]
-        over_seeds(
-            sheet,
-            axes,
-            values,
-            "load_rms_N",
-            "singular_value",
-            f"value {order + 1}",
-            tags=("order",),
-            color=GAP_COLOURS[order - 1],
-            marker="os^D"[order - 1],
-            label=f"{('second', 'third', 'fourth', 'fifth')[order - 1]} value",
-        )
-    sheet.mark(
-        axes,
-        "singular_value",
-        1.0,
-        "first value",
-        vertical=False,
-        color=BLACK,
-        linewidth=1.0,
-        label="first value",
+        look = {"colour": GAP_COLOURS[order - 1], "marker": "os^D"[order - 1]}
+        look |= {"tags": ("order",), "label": f"{word} value"}
+        curve = f"value {order + 1}"
+        items += over_seeds(values, "load_rms_N", "singular_value", curve, **look)
+    low = min((np.min(item.low) for item in items), default=0.1)
+    items.append(Mark("first value", "y", 1.0, width=1.0, label="first value"))
+    panel = Panel(
+        Axis("load_rms_N", True),
+        Axis("singular_value", True, max(0.5 * low, LOWEST_VALUE)),
+        items,
+        "singular values relative to the first",
+        "no shape found",
     )
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.set_ylim(bottom=max(axes.get_ylim()[0], LOWEST_VALUE))
-    if not axes.get_xlabel():
-        sheet.note(axes, "no shape found", "load_rms_N", "singular_value")
-    sheet.legend(axes, loc="upper left", bbox_to_anchor=(0.0, 0.92), ncols=5)
-    return [sheet]
+    title = "Size of the other shapes beside the first"
+    return [Plot("figure_11_singular_values", title, caption, {"main": panel}, legend=5)]

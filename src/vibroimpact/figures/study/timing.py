@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.figures.sheet import Sheet
-from vibroimpact.figures.style import BLUE, GREEN, GREY, ORANGE, PALE, PINK, SKY, label_of
+from vibroimpact.figures.plot import Axis, Bars, Panel, Plot, Text
+from vibroimpact.figures.style import BLUE, GREEN, GREY, ORANGE, PALE, PINK, SKY
 from vibroimpact.study.timing import METHOD
 
 COLOURS = {
@@ -16,11 +16,10 @@ COLOURS = {
     "force": PINK,
     "rest": PALE,
 }
-ORDER = tuple(COLOURS)
 
 
 def timing(config, rows):
-    """Return the Sheet of the CPU time of a study.
+    """Return the Plot of the CPU time of a study.
 
     rows: table of timing.timing_rows, list of {column: value}.
     """
@@ -34,47 +33,24 @@ def timing(config, rows):
         " the logs and benchmark files of the last run of each job."
     )
     rules = [row for row in rows if row["part"] == "" and row["rule"] != "all"]
-    sheet = Sheet("timing", "Where the time goes", caption, size=(7.6, 1.4 + 0.34 * len(rules)))
-    axes = sheet.axes["main"]
-    for place, rule in enumerate(rules):
-        start = 0.0
-        parts = [row for row in rows if row["rule"] == rule["rule"] and row["part"]]
-        for row in sorted(
-            parts, key=lambda row: ORDER.index(row["part"]) if row["part"] in ORDER else len(ORDER)
-        ):
-            sheet.record(
-                axes,
-                row["part"],
-                rule=rule["rule"],
-                jobs=rule["jobs"],
-                cpu_s=row["cpu_s"],
-                max_rss_MB=rule["max_rss_MB"],
-            )
-            axes.barh(
-                place,
-                row["cpu_s"],
-                left=start,
-                color=COLOURS.get(row["part"], GREY),
-                edgecolor="none",
-                height=0.7,
-            )
-            start += row["cpu_s"]
-        axes.annotate(
-            f"{rule['jobs']} × {rule['cpu_s'] / rule['jobs']:.1f} s, {rule['max_rss_MB']:.0f} MB",
-            (start, place),
-            xytext=(4, 0),
-            textcoords="offset points",
-            va="center",
-            fontsize=8,
-        )
     shown = [name for name in COLOURS if any(row["part"] == name for row in rows)]
-    for name in shown:
-        axes.barh(0, 0, color=COLOURS[name], label=name)
-    axes.set_yticks(np.arange(len(rules)), [row["rule"] for row in rules])
-    axes.invert_yaxis()
-    axes.margins(x=0.2)
-    axes.grid(axis="y", visible=False)
-    axes.set_xlabel(label_of("cpu_s"))
-    axes.set_ylabel("Rule")
-    sheet.legend(axes, loc="lower right")
-    return [sheet]
+    others = {row["part"] for row in rows if row["part"]} - set(COLOURS)
+    start, items = np.zeros(len(rules)), []
+    for part in [*shown, *sorted(others)]:
+        times = {row["rule"]: row["cpu_s"] for row in rows if row["part"] == part}
+        at = [place for place, rule in enumerate(rules) if rule["rule"] in times]
+        tags = {key: [rules[place][key] for place in at] for key in ("rule", "jobs", "max_rss_MB")}
+        values = np.array([times[rules[place]["rule"]] for place in at])
+        look = {"colour": COLOURS.get(part, GREY), "label": part if part in COLOURS else ""}
+        items.append(Bars(part, at, values, tags, start=start[at], thickness=0.7, **look))
+        start[at] += values
+    for place, rule in enumerate(rules):
+        each = f"{rule['jobs']} × {rule['cpu_s'] / rule['jobs']:.1f} s, {rule['max_rss_MB']:.0f} MB"
+        items.append(Text(each, start[place], place, shift=(4, 0), align=("left", "center")))
+    axes = (
+        Axis("cpu_s", low=0.0, high=1.35 * start.max()),
+        Axis("rule", names=[row["rule"] for row in rules]),
+    )
+    panel = Panel(*axes, items, legend="lower right")
+    size = (7.6, 1.4 + 0.34 * len(rules))
+    return [Plot("timing", "Where the time goes", caption, {"main": panel}, size=size)]

@@ -27,6 +27,7 @@ the form of modal_step.StepCoefficients a step of a mode needs only the force at
 from .compiled import entry_point, inlined
 from .contact_iteration import apply_compliance, solve_contact
 from .decimation import RATIO, filter_forces, filter_modes, finish_output
+from .fluid import push_fluid
 from .force_laws import all_forces
 from .holding import hold_sensors
 from .lanes import LANES, clear, fma, load, spread_from, store
@@ -67,12 +68,18 @@ def predict_rows(modal, state, u_free):
 
 
 @inlined
-def apply_drive(modal, drive, n, forces, work):
-    """Put the drive forces at the end of step n on their rows and add G_d d to u_free."""
+def apply_drive(modal, drive, n, forces, fluid, work):
+    """Put the drive forces at the end of step n, and those of the fluid behind them, on their rows
+    and add G_d d to u_free.
+    """
     for g in range(modal.row_start.size - 1):
         row0, row1 = modal.row_start[g], modal.row_start[g + 1]
         for f in range(modal.force_row_start[g], row1):
-            d = load(drive, n * forces + modal.row_force_channel[f])
+            channel = modal.row_force_channel[f]
+            if channel < forces:
+                d = load(drive, n * forces + channel)
+            else:
+                d = load(fluid.force, channel - forces)
             store(work.force, f, d)
             at = modal.compliance_start[g] + f - row0
             for r in range(row0, row1):
@@ -174,7 +181,7 @@ def initial_forces(modal, contact, laws, state, work):
 
 
 @entry_point
-def march(modal, contact, laws, hold, state, tally, output, trace, work, drive):
+def march(modal, contact, laws, hold, fluid, state, tally, output, trace, work, drive):
     """Integrate whole ticks of RATIO steps; the number of steps done, fewer where the run diverged.
 
     drive (step, force_channel, lane) N: the force at the end of every step; see Hold for what the
@@ -191,7 +198,9 @@ def march(modal, contact, laws, hold, state, tally, output, trace, work, drive):
             n = at_tick * RATIO + phase
             if hold.channel.size > 0:
                 hold_sensors(modal, hold, state, work, drive, n * forces)
-            apply_drive(modal, drive, n, forces, work)
+            if fluid.lag_start.size > 1:
+                push_fluid(modal, fluid, state, work)
+            apply_drive(modal, drive, n, forces, fluid, work)
             in_contact = solve_contact(modal, contact, laws, special, state, tally, work)
             since = state.counter[STEPS_WITHOUT_FORCE]
             quiet = not special and not in_contact and since >= QUIET
@@ -203,7 +212,7 @@ def march(modal, contact, laws, hold, state, tally, output, trace, work, drive):
                     touched = touched or laws.element_row.size > 0
             if in_contact:
                 state.group_active[:] = 1
-            tally_drive(modal, state, tally, work, in_contact)
+            tally_drive(modal, state, tally, work, in_contact, forces)
             if phase == RATIO - 1:
                 keep_displacements(modal, state)
             if quiet:

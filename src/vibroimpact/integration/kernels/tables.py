@@ -67,6 +67,7 @@ class Laws(NamedTuple):
     """
 
     contact_point: np.ndarray  # (law,)
+    land: np.ndarray  # (law,) its place in Tally.land_work, with lobes the first one; -1: none
     flat: np.ndarray  # (law,) 1: a flat land with the normal below; 0: round the centre
     normal_1: np.ndarray  # (law, lane)
     normal_2: np.ndarray  # (law, lane)
@@ -121,7 +122,8 @@ class State(NamedTuple):
 class Tally(NamedTuple):
     """Sums over the steps since they were last cleared, each (.., lane)."""
 
-    input_work: np.ndarray  # (lane,) J
+    input_work: np.ndarray  # (lane,) J, of the drive and of the fluid
+    fluid_work: np.ndarray  # (lane,) J, of fluid-elastic forces
     contact_work: np.ndarray  # (lane,) J, trapezoidal sum of f du over contacts and elements
     dissipated: np.ndarray  # (lane,) J, by the modal damping
     contact_steps: np.ndarray  # (support, lane)
@@ -132,6 +134,7 @@ class Tally(NamedTuple):
     impact_velocity_square: np.ndarray  # (support, lane) (m/s)² sum over impacts
     impact_velocity_peak: np.ndarray  # (support, lane) m/s
     sliding_work: np.ndarray  # (support, lane) J: normal force times sliding distance
+    land_work: np.ndarray  # (support and land, lane) J, by land; see support_lands
     force_displacement: np.ndarray  # (row, lane) N m sum of force times displacement
     row_work: np.ndarray  # (row, lane) J, trapezoidal sum of f du on contact rows
     row_force: np.ndarray  # (row, lane) N sum on contact rows
@@ -200,6 +203,24 @@ class Hold(NamedTuple):
     difference: np.ndarray  # (sensor, lane) m, measured less model, one step earlier
     memory: np.ndarray  # (sensor, lane) m/s, what row_velocity keeps of the last step
     rate: np.ndarray  # (sensor, lane) m/s, work space
+
+
+class Fluid(NamedTuple):
+    """Fluid-elastic forces, the force channels behind those of the drive; no rows: none acts."""
+
+    row_start: np.ndarray  # (fluid_row + 1,) first entry of each in `row`
+    row: np.ndarray  # (entry,) a row of each group that moves it
+    lag_start: np.ndarray  # (fluid_row + 1,) first lag of each
+    stiffness: np.ndarray  # (fluid_row, lane), this and the next see fluid
+    damping: np.ndarray  # (fluid_row, lane)
+    lag_stiffness: np.ndarray  # (lag, lane)
+    decay: np.ndarray  # (lag, lane)
+    gain: np.ndarray  # (lag, lane)
+    force: np.ndarray  # (fluid_row, lane) at the end of the last step, as all below
+    displacement: np.ndarray  # (fluid_row, lane) one step earlier
+    free: np.ndarray  # (fluid_row, lane) without forces at the end of the step
+    memory: np.ndarray  # (fluid_row, lane) what row_velocity keeps
+    lag: np.ndarray  # (lag, lane) z, one step earlier
 
 
 class Trace(NamedTuple):

@@ -1,8 +1,16 @@
 """Sums and largest values of a step: work, contact statistics, stresses; and the trace."""
 
+import math
+
 from .compiled import inlined
 from .decimation import project_channels
-from .force_laws import normal_force, penetration, penetration_rate, tangential_slip
+from .force_laws import (
+    normal_force,
+    penetration,
+    penetration_rate,
+    radial_offset,
+    tangential_slip,
+)
 from .lanes import (
     LANES,
     add_to,
@@ -23,8 +31,10 @@ from .lanes import (
 
 
 @inlined
-def tally_drive(modal, state, tally, work, in_contact):
-    """Add the work of the drive; make the end of the step the start of the next on its rows."""
+def tally_drive(modal, state, tally, work, in_contact, forces):
+    """Add the work of the drive, whose channels are the first ``forces``, and of the fluid; make
+    the end of the step the start of the next on their rows.
+    """
     input_work = load(tally.input_work, 0)
     for g in range(modal.row_start.size - 1):
         row0, row_f, row1 = modal.row_start[g], modal.force_row_start[g], modal.row_start[g + 1]
@@ -38,7 +48,10 @@ def tally_drive(modal, state, tally, work, in_contact):
                     )
             du = u - load(state.row_displacement, f)
             force = load(work.force, f)
-            input_work = fma(0.5 * (force + load(state.row_force, f)), du, input_work)
+            mean = 0.5 * (force + load(state.row_force, f))
+            input_work = fma(mean, du, input_work)
+            if modal.row_force_channel[f] >= forces:
+                store(tally.fluid_work, 0, fma(mean, du, load(tally.fluid_work, 0)))
             store(state.row_displacement, f, u)
             store(state.row_force, f, force)
     store(tally.input_work, 0, input_work)
@@ -156,7 +169,29 @@ def tally_laws(modal, contact, laws, state, tally, work):
             slip = fma(spring, load(laws.stick_flexibility, k), slip)
             s = contact.support[point]
             store(tally.sliding_work, s, fma(normal, magnitude(slip), load(tally.sliding_work, s)))
+            if laws.land[k] >= 0:
+                tally_land(contact, laws, tally, k, (u1, u2), normal * magnitude(slip))
         store(state.friction_force, k, friction)
+
+
+@inlined
+def tally_land(contact, laws, tally, k, u, sliding):
+    """Add the sliding work of law k to its land; with lobes to the land nearest to u."""
+    lands = laws.lobes[k]
+    if lands == 0:
+        add_to(tally.land_work, laws.land[k], sliding)
+        return
+    d1, d2, _ = radial_offset(contact, laws.contact_point[k], u[0], u[1])
+    cos_angle, sin_angle = load(laws.lobe_cosine, k), load(laws.lobe_sine, k)
+    c = fma(d1, cos_angle, d2 * sin_angle)  # along the direction of a land, and across it
+    s = fma(d2, cos_angle, -(d1 * sin_angle))
+    half = math.pi / lands
+    cos_half, sin_half = spread(math.cos(half)), spread(math.sin(half))
+    cos_next, sin_next = spread(math.cos(2.0 * half)), spread(math.sin(2.0 * half))
+    for land in range(lands):
+        near = c * sin_half > magnitude(s) * cos_half
+        add_to(tally.land_work, laws.land[k] + land, where(near, sliding, 0.0))
+        c, s = fma(c, cos_next, s * sin_next), fma(s, cos_next, -(c * sin_next))
 
 
 @inlined

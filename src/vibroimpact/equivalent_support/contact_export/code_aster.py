@@ -1,0 +1,112 @@
+"""code_aster commands: obstacles and the relation DIS_CHOC of DYNA_VIBRA on modes.
+
+A flat land is one of two parallel planes PLAN_Z so far apart that the other is never met, a circle
+is CERCLE, and lobes are an outline DISCRET of angle in degrees and radius. NORM_OBST is the axis of
+the tube; ANGL_VRIL turns the other two axes of the obstacle about it.
+Source: code_aster U4.44.21 (DEFI_OBSTACLE), U4.53.21 (DYNA_VIBRA), its routines op0073 and distno,
+and its test sdnd100a.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from vibroimpact.config.profiles import Lobes
+from vibroimpact.contact.outline import radial_gap
+
+from ..export_formats.frames import plain_name
+from ..export_formats.unit_system import UnitSystem
+from .points import ContactPoint, ContactSet
+
+FAR = 1.0  # m, half the distance of the two planes of a land
+OUTLINE_DEG = np.linspace(0.0, 360.0, 361)
+USE = (
+    "Each GROUP_NO_1 is the node of your mesh at its contact point. Give CONTACTS to"
+    " DYNA_VIBRA(BASE_CALCUL='GENE', TYPE_CALCUL='TRAN', COMPORTEMENT=CONTACTS, ...)."
+)
+
+
+def text(contacts: ContactSet, unit: UnitSystem, first_number: int) -> str:
+    """Return the commands. first_number is not used: groups have names."""
+    outlines = {point.name: point for point in contacts.points if point.lobes[0]}
+    lines = [
+        *contacts.head(unit, "#", USE),
+        "CIRCLE = DEFI_OBSTACLE(TYPE='CERCLE')",
+        "PLANES = DEFI_OBSTACLE(TYPE='PLAN_Z')",
+    ]
+    for point in outlines.values():
+        lines += [
+            f"{_outline_name(point)} = DEFI_OBSTACLE(TYPE='DISCRET', VALE=(",
+            *_outline(point, unit),
+            "))",
+        ]
+    lines.append("CONTACTS = (")
+    for point in contacts.points:
+        for obstacle, origin, gap, third in _obstacles(point):
+            lines += _term(point, unit, (obstacle, origin, gap, third))
+    return "\n".join([*lines, ")"]) + "\n"
+
+
+Obstacle = tuple[str, np.ndarray, float, np.ndarray]
+
+
+def _obstacles(point: ContactPoint) -> Iterator[Obstacle]:
+    """Yield (name, origin (3,) in m, gap in m, direction of the obstacle's third axis)."""
+    if not len(point.lands):
+        name = _outline_name(point) if point.lobes[0] else "CIRCLE"
+        yield name, point.position + point.offset, point.gap, point.axes[1]
+    for normal in point.lands:
+        origin = point.position + (point.land_gap(normal) - FAR) * normal
+        yield "PLANES", origin, FAR, normal
+
+
+def _term(point: ContactPoint, unit: UnitSystem, obstacle: Obstacle) -> list[str]:
+    """Return the lines of one obstacle in COMPORTEMENT."""
+    name, origin, gap, third = obstacle
+    lines = [
+        f"    _F(RELATION='DIS_CHOC', GROUP_NO_1='{plain_name(point.name).upper()}',",
+        f"       OBSTACLE={name}, ORIG_OBST={_tuple(unit.length * origin)},",
+        f"       NORM_OBST={_tuple(point.axis)}, ANGL_VRIL={roll_deg(point.axis, third):.9g},",
+        f"       JEU={unit.length * gap:.12g}, RIGI_NOR={unit.stiffness * point.stiffness:.9g},",
+    ]
+    if point.damping:
+        lines.append(f"       AMOR_NOR={unit.damping * point.damping:.9g},")
+    if point.friction:
+        lines.append(
+            f"       FROTTEMENT='COULOMB', COULOMB={point.friction:.9g},"
+            f" RIGI_TAN={unit.stiffness * point.stick_stiffness:.9g},"
+        )
+    return [*lines, "    ),"]
+
+
+def roll_deg(axis: np.ndarray, third: np.ndarray) -> float:
+    """Return ANGL_VRIL in degrees, by which the third axis of an obstacle is `third`.
+
+    axis: (3,) the first axis, of the nautical angles alpha and beta. Without roll the second axis
+    is horizontal.
+    """
+    alpha, beta = np.arctan2(axis[1], axis[0]), -np.arctan2(axis[2], np.hypot(axis[0], axis[1]))
+    second = np.array([-np.sin(alpha), np.cos(alpha), 0.0])
+    upwards = np.array([np.cos(alpha) * np.sin(beta), np.sin(alpha) * np.sin(beta), np.cos(beta)])
+    return float(np.degrees(np.arctan2(-third @ second, third @ upwards)))
+
+
+def _outline_name(point: ContactPoint) -> str:
+    """Return the name of the obstacle of a point with lobes."""
+    return f"HOLE_{plain_name(point.name).upper()}"
+
+
+def _outline(point: ContactPoint, unit: UnitSystem) -> Iterator[str]:
+    """Yield the lines of the outline of a point with lobes: angle in degrees, radius."""
+    count, depth, angle = point.lobes
+    profile = Lobes(kind="lobes", count=count, depth_m=depth, angle_deg=float(np.degrees(angle)))
+    radii = unit.length * radial_gap(profile, point.gap, np.radians(OUTLINE_DEG))
+    for degrees, radius in zip(OUTLINE_DEG, radii, strict=True):
+        yield f"    {degrees:.9g}, {radius:.9g},"
+
+
+def _tuple(values: Iterable[float]) -> str:
+    """Return a tuple of Python."""
+    return f"({', '.join(f'{value + 0.0:.12g}' for value in values)})"

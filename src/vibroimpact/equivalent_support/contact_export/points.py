@@ -1,0 +1,141 @@
+"""The contact of a configuration's supports as other programs take it: points, lands and laws."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.config.schema import Config
+from vibroimpact.reduction.modal_model import ModalModel
+
+from ..answer import EquivalentError
+from ..export_formats.frames import head
+from ..export_formats.unit_system import UnitSystem
+from ..springs import SpringSet
+
+
+@dataclass(frozen=True, eq=False)
+class ContactPoint:
+    """The contact of one point.
+
+    name: such as "left_3": support and number of the contact point, from 1. position: (3,) m.
+    axes: (2, 3) unit vectors across the tube. offset: (3,) m, of the obstacle's centre.
+    gap: m. stiffness: N/m. damping: N s/m. friction: Coulomb's coefficient. stick_stiffness: N/m.
+    lands: (land, 3) normals of flat lands away from the centre; none for a round hole.
+    lobes: number, depth in m and angle in rad of the lobes of a round hole; 0 lobes for a circle.
+    """
+
+    name: str
+    position: np.ndarray
+    axes: np.ndarray
+    offset: np.ndarray
+    gap: float
+    stiffness: float
+    lands: np.ndarray
+    damping: float = 0.0
+    friction: float = 0.0
+    stick_stiffness: float = 0.0
+    lobes: tuple[int, float, float] = (0, 0.0, 0.0)
+
+    @property
+    def axis(self) -> np.ndarray:
+        """The direction (3,) of the tube, which makes a right-handed system with the axes."""
+        return np.cross(*self.axes)
+
+    def require_circle(self, program: str) -> None:
+        """Raise EquivalentError unless a round hole is a circle round the tube at rest."""
+        if self.lobes[0]:
+            raise EquivalentError(
+                f"{self.name} has rounded lobes, which {program} has not: export flat lands"
+                " (broached without depth_m), or code_aster, which takes the outline"
+            )
+        if np.any(self.offset):
+            raise EquivalentError(
+                f"{self.name} is a hole off centre, which the export for {program} has not: set"
+                " centre_offset_m to 0, or export code_aster"
+            )
+
+    def land_gap(self, normal: np.ndarray) -> float:
+        """Return how far the tube moves along a land's normal until it touches it, m."""
+        return self.gap + float(normal @ self.offset)
+
+
+@dataclass(frozen=True)
+class ContactSet:
+    """The contact of all supports. notes: sentences for the head of a file.
+
+    left_out: sentences for what a format does not have.
+    """
+
+    points: tuple[ContactPoint, ...]
+    notes: tuple[str, ...] = ()
+    left_out: tuple[str, ...] = ()
+
+    def head(self, unit: UnitSystem, mark: str, use: str) -> list[str]:
+        """Return the comment lines that begin a file; mark and use as in frames.head."""
+        sentences = SpringSet((), (), self.notes, self.left_out)
+        return head(sentences, unit, mark, use, "Contact of supports")
+
+
+def contact_set(config: Config, model: ModalModel, gap_m: float) -> ContactSet:
+    """Return the ContactSet of a configuration at a gap of the case in m.
+
+    model: of the configuration. Raises EquivalentError for a support that no format can say.
+    """
+    if not np.any(model.contact_position):
+        raise EquivalentError(
+            "the supports of this structure have no positions in space (a chain, matrices or"
+            " measured modes): give the places of their points in `points`"
+        )
+    for support in config.supports:
+        reason = next(_reasons(support), None)
+        if reason:
+            raise EquivalentError(f"support {support.name}: {reason} is in no export of contact")
+    numbers = [
+        int((model.support_of_point[:point] == support).sum()) + 1
+        for point, support in enumerate(model.support_of_point)
+    ]
+    points = tuple(_point(model, point, number, gap_m) for point, number in enumerate(numbers))
+    for point in points:
+        if min([point.gap, *map(point.land_gap, point.lands)]) < 0.0:
+            raise EquivalentError(
+                f"{point.name} touches at rest: an export of contact needs a gap that is not"
+                " negative on every side"
+            )
+    note = f"Contact of the supports of '{config.study}' at a gap of {1e3 * gap_m:.6g} mm."
+    return ContactSet(points, (note,))
+
+
+def _reasons(support: object) -> Iterator[str]:
+    """Yield the laws of a support that no format has, by their keys."""
+    for key in ("plate", "other_point", "preload_N"):
+        if getattr(support, key) is not None:
+            yield key
+    for key in ("hunt_crossley_s_per_m", "hertz_N_per_m15"):
+        if getattr(support, key) != 0.0:
+            yield key
+
+
+def _point(model: ModalModel, point: int, number: int, gap_m: float) -> ContactPoint:
+    """Return the ContactPoint with an index of the model, the number-th of its support."""
+    laws, axes = model.contact_laws, model.contact_directions[point]
+    own = laws.gap[point]
+    return ContactPoint(
+        name=f"{model.support_names[model.support_of_point[point]]}_{number}",
+        position=model.contact_position[point],
+        axes=axes,
+        offset=model.centre_offset[point] @ axes,
+        gap=float(gap_m * model.gap_factor[point] if np.isnan(own) else own),
+        stiffness=float(model.contact_stiffness[point]),
+        damping=float(laws.damping[point]),
+        friction=float(laws.friction[point]),
+        stick_stiffness=float(laws.stick_stiffness[point]),
+        lands=laws.land_normal[laws.land_point == point] @ axes,
+        lobes=(
+            int(laws.lobes[point]),
+            float(laws.lobe_depth[point]),
+            float(laws.lobe_angle[point]),
+        ),
+    )

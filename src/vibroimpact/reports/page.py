@@ -1,0 +1,50 @@
+"""Every page: one template with blocks, one style sheet on the screen and on paper."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+FOLDER = Path(__file__).parent
+STYLE = (FOLDER / "page.css").read_text(encoding="utf-8")
+MARKS = ("pass", "warn", "refuse")  # words of a table that have a colour
+WHOLE_PX = 1216  # of a figure as wide as the page: 7.6 in at 160 dpi
+
+
+def rendered(template: str, **values: Any) -> str:
+    """Return a page.
+
+    template: name of a file of this folder that extends page.html.
+    values: what it shows.
+    """
+    environment = Environment(
+        loader=FileSystemLoader(FOLDER),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+    )
+    environment.globals["marks"] = MARKS
+    return environment.get_template(template).render(style=STYLE, **values)
+
+
+def embedded(figures: Iterable[Path]) -> list[dict]:
+    """Return {name, caption, data, percent} of PNG files; data is the text of a data: address,
+    percent the share of the page's width with which their letters are as large as in others.
+
+    The caption is in a .txt file of the same name.
+    """
+    return [_embedded(file, file.read_bytes()) for file in map(Path, figures)]
+
+
+def _embedded(file: Path, content: bytes) -> dict:
+    pixels = int.from_bytes(content[16:20], "big")  # the width in the header of a PNG file
+    return {
+        "name": file.stem,
+        "caption": file.with_suffix(".txt").read_text(encoding="utf-8"),
+        "data": base64.b64encode(content).decode(),
+        "percent": min(100, round(100 * pixels / WHOLE_PX)),
+    }

@@ -1,0 +1,278 @@
+"""A tube with gaps in flows of rising velocity, beside the linear tubes that stand for it.
+
+Each run has one turbulent load and one velocity. It starts at rest, or with a motion of several
+gaps: where the two differ, the tube has two ways to vibrate. The runs without flow give k and c of
+each support at that load; with them the eigenvalues have the critical velocity that the equivalent
+linear tube predicts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, replace
+from itertools import product
+from typing import Any, cast
+
+import numpy as np
+import xarray as xr
+
+from vibroimpact.config.changed_keys import changed_config
+from vibroimpact.config.schema import Config
+from vibroimpact.excitation.fluid_elastic import FluidLaws, fluid_force
+from vibroimpact.flow.limit_cycle import ModelInFlow
+from vibroimpact.flow.stability import NoFlow
+from vibroimpact.geometry.sections import outer_width
+from vibroimpact.identify.secant import secant_support
+from vibroimpact.integration.batch import BatchResult, Schedule, integrate_batch
+from vibroimpact.integration.contact_convergence import IntegrationError
+from vibroimpact.integration.kernels.lanes import LANES
+from vibroimpact.integration.preload import seated
+from vibroimpact.io.stopwatch import Stopwatch
+
+from .cases import Case, load_values
+from .in_process import reduced_model
+from .simulation import drive_of, imperfection, record_dataset, seed_forces
+
+STARTS = {"small": 0.0, "large": 3.0}  # gaps that the lowest mode would reach without stops
+ONSET = 1.25  # times the response without flow: beyond the scatter of a record, 7 to 14 %
+AMPLITUDES = np.array([1.02, 1.05, 1.1, 1.2, 1.35, 1.5, 1.75, 2.0, 2.5, 3.0])  # of cycles, in gaps
+SEARCHED = 3.0  # times the highest velocity, up to which critical velocities are looked for
+
+
+@dataclass(frozen=True)
+class FlowRun:
+    """One run, in SI units; an infinite response where it grew without bound.
+
+    start: small or large. rms: of the point of the shape line that moves most. contact_fraction: of
+    the support that is touched most. wear_work_rate: of all supports. fluid_power: from the flow.
+    """
+
+    load_rms_N: float
+    gap_m: float
+    velocity_m_per_s: float
+    start: str
+    seed: int
+    rms_m: float
+    contact_fraction: float
+    wear_work_rate_W: float
+    fluid_power_W: float
+
+
+@dataclass(frozen=True)
+class Onset:
+    """Velocities in m/s at one load and gap, NaN where there is none in the range.
+
+    k, c: of a support without flow, the mean over the supports. open, equivalent, closed: critical
+    velocities of the linear tube with no supports, with k and c of each, and with contact
+    stiffnesses. small, large: at which the runs that start so leave the response without flow.
+    """
+
+    load_rms_N: float
+    gap_m: float
+    k_N_per_m: float
+    c_N_s_per_m: float
+    open_m_per_s: float
+    equivalent_m_per_s: float
+    closed_m_per_s: float
+    small_m_per_s: float
+    large_m_per_s: float
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """A limit cycle by the describing function: amplitude of the support that moves most."""
+
+    gap_m: float
+    amplitude_m: float
+    velocity_m_per_s: float
+
+
+@dataclass(frozen=True)
+class FlowSweep:
+    """All runs, what the linear tubes predict, and the limit cycles without turbulence."""
+
+    runs: tuple[FlowRun, ...]
+    onsets: tuple[Onset, ...]
+    cycles: tuple[Cycle, ...]
+
+    def tables(self) -> dict[str, list[dict[str, Any]]]:
+        """Return {name of the table: rows}."""
+        return {
+            "flow_runs": [asdict(run) for run in self.runs],
+            "flow_onset": [asdict(onset) for onset in self.onsets],
+            "flow_cycles": [asdict(cycle) for cycle in self.cycles],
+        }
+
+
+def flow_sweep(config: Config) -> FlowSweep:
+    """Return the FlowSweep over the velocities of `flow` and the loads, gaps and seeds of the grid.
+
+    Raises NoFlow without flow.coupling, IntegrationError.
+    """
+    flow = config.flow
+    if flow is None or flow.coupling is None:
+        raise NoFlow(
+            f"study '{config.study}' has no flow.coupling: give the fluid-elastic force, as"
+            " {kind: quasi_steady, lift_slope: -20, drag: 0.3}"
+        )
+    highest = max(flow.velocity_m_per_s)
+    config = changed_config(config, {"flow.acting_m_per_s": highest})
+    model, structure = reduced_model(config), cast(Any, config.structure)
+    force = fluid_force(flow.coupling, outer_width(structure.section))
+    tube = ModelInFlow(model, force, highest, SEARCHED * highest)
+    runs, onsets = [], []
+    for load, gap in product(load_values(config.grid), config.grid.gap_m):
+        batches = [
+            own
+            for seed in range(config.grid.seeds)
+            for start in STARTS
+            for own in _runs(config, tube, Case(load, gap, seed), start)
+        ]
+        runs += [run for run, _ in batches]
+        still = [record for run, record in batches if run.velocity_m_per_s == 0.0]
+        onsets.append(_onset(tube, [run for run, _ in batches], still))
+    cycles = tuple(own for gap in config.grid.gap_m for own in _cycles(tube, gap))
+    return FlowSweep(tuple(runs), tuple(onsets), cycles)
+
+
+def _runs(
+    config: Config, tube: ModelInFlow, case: Case, start: str
+) -> Iterator[tuple[FlowRun, xr.Dataset]]:
+    """Yield (FlowRun, record) of one load, gap, seed and start at each velocity, 0 first."""
+    model, step = tube.model, config.integration
+    schedule = Schedule(
+        step.steps_per_second,
+        config.record.sampling_frequency_Hz,
+        step.start_up_s,
+        config.record.duration_s,
+        step.scheme,
+    )
+    forces = {case.seed: seed_forces(config, schedule, case.seed, model.drive_shapes.shape[1])}
+    velocities = [0.0, *sorted(cast(Any, config.flow).velocity_m_per_s)]
+    moving = replace(model, initial_velocity=_push(model, STARTS[start] * case.gap_m))
+    for first in range(0, len(velocities), LANES):
+        batch = velocities[first : first + LANES]
+        cases = [case] * len(batch)
+        offset = np.stack([imperfection(config, model, case)] * len(batch), axis=-1)
+        gaps = np.full(len(batch), case.gap_m)
+        offset, rest = seated(model, schedule, gaps, offset)
+        drive = drive_of(cases, forces, Stopwatch())
+
+        line = _LineSquares(model.sensor_shapes.shape[1])
+
+        def integrate(laws, gaps=gaps, offset=offset, drive=drive, rest=rest, line=line):
+            line.restart()
+            return integrate_batch(moving, schedule, gaps, offset, drive, line.add, rest, laws)
+
+        lanes, grown = _bounded(integrate, _laws(tube, batch))
+        for lane, velocity in enumerate(batch):
+            record = record_dataset(config, model, schedule, lanes, lane, case)
+            rms = np.inf if lane in grown else line.rms(lane)
+            yield _run(case, (velocity, start), record, rms), record
+
+
+class _LineSquares:
+    """Sums of squares of the motion along the shape line, whose channels follow the sensors."""
+
+    def __init__(self, sensors: int) -> None:
+        self.sensors = sensors
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget all."""
+        self.sum: Any = 0.0
+        self.samples = 0
+
+    def add(self, _first: int, displacement: np.ndarray, *_: np.ndarray) -> None:
+        """Take a piece (case, channel, sample) in m."""
+        line = displacement[:, self.sensors :].astype(float)
+        self.sum = self.sum + np.einsum("cps,cps->cp", line, line)
+        self.samples += line.shape[-1]
+
+    def rms(self, case: int) -> float:
+        """Return the RMS in m of the point that moves most."""
+        return float(np.sqrt(self.sum[case].max() / self.samples))
+
+
+def _bounded(integrate: Any, laws: list[FluidLaws]) -> tuple[BatchResult, set[int]]:
+    """Return (result, lanes that grew without bound); the flow of these is taken away."""
+    grown: set[int] = set()
+    while True:
+        try:
+            return integrate(laws), grown
+        except IntegrationError as error:
+            if error.case is None or error.case in grown:
+                raise
+            grown.add(error.case)
+            own = laws[error.case]
+            still = {name: np.zeros_like(values) for name, values in vars(own).items()}
+            laws = [*laws[: error.case], FluidLaws(**still), *laws[error.case + 1 :]]
+
+
+def _laws(tube: ModelInFlow, velocities: Sequence[float]) -> list[FluidLaws]:
+    """Return the FluidLaws of the rows at each velocity of the flow in m/s."""
+    share = tube.model.fluid_laws.velocity / tube.acting
+    return [tube.force.laws(share * velocity) for velocity in velocities]
+
+
+def _push(model: Any, amplitude: float) -> np.ndarray:
+    """Return (mode,) modal rates from which the lowest mode that the flow moves would reach an
+    amplitude in m at the support that moves most.
+    """
+    rates = np.zeros(model.modes)
+    moved = np.any(model.fluid_shapes != 0.0, axis=1) & (model.omega > 0.0)
+    lowest = int(np.flatnonzero(moved)[0])
+    most = np.linalg.norm(model.contact_shapes[lowest], axis=-1).max(initial=0.0)
+    if most > 0.0:
+        rates[lowest] = model.omega[lowest] * amplitude / most
+    return rates
+
+
+def _run(case: Case, at: tuple[float, str], record: xr.Dataset, rms: float) -> FlowRun:
+    """Return the FlowRun of a record; at: (velocity, start)."""
+    bounded = np.isfinite(rms)
+    return FlowRun(
+        *(case.load_rms_N, case.gap_m, *at, case.seed, rms),
+        float(record["contact_fraction"].max()) if bounded else np.nan,
+        float(record["wear_work_rate"].sum()) if bounded else np.nan,
+        float(record["fluid_power"]) if bounded else np.nan,
+    )
+
+
+def _onset(tube: ModelInFlow, runs: list[FlowRun], still: list[xr.Dataset]) -> Onset:
+    """Return the Onset of the runs at one load and gap; still: the records without flow."""
+    supports = tube.supports
+    found = [[secant_support(record, tube.model, own) for own in supports] for record in still]
+    k = np.nanmean([[own.k for own in row] for row in found], axis=0)
+    c = np.nanmean([[own.c for own in row] for row in found], axis=0)
+    none = np.zeros(len(supports))
+    critical = [tube.critical(*pair)[0] for pair in ((none, none), (k, c), (tube.held, none))]
+    starts = [onset_of([run for run in runs if run.start == start]) for start in STARTS]
+    first = runs[0]
+    means = float(k.mean()), float(c.mean())
+    return Onset(first.load_rms_N, first.gap_m, *means, *critical, *starts)
+
+
+def onset_of(runs: Sequence[FlowRun]) -> float:
+    """Return the velocity in m/s at which the response is ONSET times that without flow: the median
+    over seeds, interpolated; NaN where it never is.
+    """
+    velocities = sorted({run.velocity_m_per_s for run in runs})
+    median = np.array(
+        [np.median([run.rms_m for run in runs if run.velocity_m_per_s == v]) for v in velocities]
+    )
+    over = np.flatnonzero(median > ONSET * median[0])
+    if not over.size:
+        return float("nan")
+    last = over[0]
+    if not np.isfinite(median[last]):
+        return float(velocities[last])
+    levels = np.log(median[last - 1 : last + 1])
+    wanted = np.log(ONSET * median[0])
+    return float(np.interp(wanted, levels, velocities[last - 1 : last + 1]))
+
+
+def _cycles(tube: ModelInFlow, gap: float) -> Iterator[Cycle]:
+    """Yield the limit cycles at a gap in m."""
+    for amplitude in gap * AMPLITUDES:
+        yield Cycle(gap, float(amplitude), tube.limit_cycle(gap, float(amplitude)))

@@ -1,0 +1,91 @@
+"""A tube with gaps in flows of rising velocity, and the linear tubes that stand for it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import vibroimpact as vi
+from tests.flow.test_in_time import CRITICAL, GAP, QUASI_STEADY, in_flow, stopped
+from vibroimpact.cli import main
+from vibroimpact.figures.flow_sweep import flow_sweep_figures
+from vibroimpact.flow.limit_cycle import ModelInFlow, describing_stiffness
+from vibroimpact.study.flow_sweep import FlowRun, flow_sweep, onset_of
+
+EXAMPLE = "config/examples/u_tube_flow.yaml"
+QUICK = {
+    "grid.load_rms_N": [0.1],
+    "grid.seeds": 1,
+    "flow.velocity_m_per_s": [0.3, 2.4],
+    "integration.start_up_s": 2.0,
+    "record.duration_s": 2.0,
+    "spectra.segment_s": 1.0,
+}
+
+
+def test_describing_function_of_a_stop():
+    """Against the first harmonic of the force, by quadrature."""
+    angle = (np.arange(200_000) + 0.5) * 2.0 * np.pi / 200_000
+    for amplitude in (1.05, 1.5, 4.0):
+        u = amplitude * np.cos(angle)
+        force = np.sign(u) * np.maximum(np.abs(u) - 1.0, 0.0)
+        harmonic = 2.0 * np.mean(force * np.cos(angle)) / amplitude
+        found = describing_stiffness(1.0, np.array([amplitude]))[0]
+        assert found == pytest.approx(harmonic, rel=1e-6)
+    assert describing_stiffness(1.0, np.array([0.5])) == 0.0
+
+
+@pytest.mark.parametrize(("over", "amplitude"), [(1.1, 1.1484), (1.3, 1.4254), (1.5, 1.8590)])
+def test_limit_cycle_of_the_describing_function(over, amplitude):
+    """One lag between elastic stops of 5 k at 1 mm."""
+    tube = ModelInFlow(in_flow(stopped(), QUASI_STEADY, 1.0), QUASI_STEADY, 1.0, 3.0)
+    none = np.zeros(2)
+    assert tube.critical(none, none)[0] == pytest.approx(CRITICAL, rel=1e-5)
+    assert tube.limit_cycle(GAP, 1e-3 * amplitude) == pytest.approx(over * CRITICAL, rel=2e-4)
+
+
+def runs(levels):
+    """Runs at 0, 1, 2, ... m/s with given responses."""
+    run = FlowRun(1.0, 1e-4, 0.0, "small", 0, 1.0, 0.0, 0.0, 0.0)
+    return [replace(run, velocity_m_per_s=float(v), rms_m=rms) for v, rms in enumerate(levels)]
+
+
+@pytest.mark.parametrize(
+    ("levels", "expected"),
+    [((1.0, 1.1, 1.2), np.nan), ((1.0, 1.0, 1.25**2), 1.5), ((1.0, 1.0, np.inf), 2.0)],
+)
+def test_onset_is_where_the_response_leaves(levels, expected):
+    assert onset_of(runs(levels)) == pytest.approx(expected, nan_ok=True)
+
+
+def test_sweep_of_the_example():
+    found = flow_sweep(vi.changed_config(EXAMPLE, QUICK))
+    (onset,) = found.onsets
+    assert onset.open_m_per_s == pytest.approx(0.3151, rel=1e-3)
+    assert onset.closed_m_per_s == pytest.approx(3.202, rel=1e-3)
+    assert onset.open_m_per_s < onset.equivalent_m_per_s < 0.5
+    assert len(found.runs) == 3 * 2
+    at = {(run.start, run.velocity_m_per_s): run for run in found.runs}
+    for start in ("small", "large"):
+        still, fast = at[start, 0.0], at[start, 2.4]
+        assert still.fluid_power_W == 0.0 < fast.fluid_power_W
+        assert fast.contact_fraction > 3.0 * still.contact_fraction
+        # ten times above the critical velocity of the open supports the bars still hold the tube
+        assert 1.25 * still.rms_m < fast.rms_m < 2.0 * 0.2e-3
+    (sheet,) = flow_sweep_figures(found)
+    drawn = [row for row in sheet.rows() if row["curve"] == "0.1 N, small start"]
+    assert len(drawn) == 6
+
+
+def test_growth_without_bound_is_told():
+    """A frozen negative damping beyond the critical velocity of the closed supports."""
+    law = {"kind": "negative_damping", "constant": 1.0, "frequency_Hz": 30.0}
+    config = vi.changed_config(EXAMPLE, QUICK | {"flow.coupling": law})
+    found = flow_sweep(vi.changed_config(config, {"flow.velocity_m_per_s": [0.01, 2.0]}))
+    assert {run.velocity_m_per_s for run in found.runs if np.isinf(run.rms_m)} == {2.0}
+    assert all(own.small_m_per_s <= 2.0 for own in found.onsets)
+
+
+def test_a_sweep_without_a_force_is_told_what_it_needs(capsys):
+    assert main(["stability", "config/examples/u_tube_drilled.yaml", "--simulate"]) == 1
+    assert "flow.coupling" in capsys.readouterr().err
