@@ -13,7 +13,6 @@ from tests.properties.guarded import Tried, folder_of_example, guarded
 from tests.properties.recorder_files import EITHER, REFUSED, RIGHT
 from vibroimpact.structure.matrix_files import MatrixFileError, read_matrix
 
-WHOLE = np.array([[20, -5, 0, 0], [-5, 40, -10, 1], [0, -10, 30, 0], [0, 1, 0, 50]])
 VALUES = {
     "right": (lambda matrix: matrix, RIGHT),
     "round-off apart": (lambda matrix: matrix + 1e-13 * np.triu(matrix), RIGHT),
@@ -40,6 +39,13 @@ NAMES = {
     "mass": RIGHT, "M": RIGHT, "m": RIGHT, "Mass": EITHER, "mgg": EITHER, "matrix": EITHER,
     "K": EITHER,
 }  # fmt: skip
+
+
+def symmetric(seed):
+    """A matrix (4, 4) of small whole numbers; no row can stand for another."""
+    half = np.triu(np.random.default_rng(seed).integers(-9, 10, (4, 4)).astype(float), 1)
+    half[0, 1] = -5.0
+    return half + half.T + np.diag([20.0, 40.0, 30.0, 50.0])
 
 
 def sparse_of(form, matrix):
@@ -150,7 +156,8 @@ def test_matrices_of_programs_are_refused_or_right(ending, reliability):
         kind = data.draw(st.sampled_from([*TYPES])) if odd == "type" else "f8"
         name = data.draw(st.sampled_from([*NAMES])) if odd == "name" else "M"
         change, owed = VALUES[values]
-        matrix = change(WHOLE.astype(float)).astype(kind)
+        expected = symmetric(data.draw(st.integers(0, 2**32 - 1)))
+        matrix = change(expected).astype(kind)
         with folder_of_example() as folder:
             path = folder / f"mass{ending}"
             owes = [owed, TYPES[kind], WRITERS[ending](data.draw, path, matrix, name)]
@@ -162,7 +169,7 @@ def test_matrices_of_programs_are_refused_or_right(ending, reliability):
             assert {*owes} != {RIGHT}, told
             return
         assert REFUSED not in owes, told
-        np.testing.assert_allclose(result.toarray(), WHOLE, rtol=1e-6, err_msg=str(told))
+        np.testing.assert_allclose(result.toarray(), expected, rtol=1e-6, err_msg=str(told))
 
     check()
     reliability.inputs(f"matrices of programs, {ending}: types, forms, names, halves", tried)

@@ -144,7 +144,7 @@ def spelled_name(draw, data):
     name, text = draw(st.sampled_from(names)), draw(st.sampled_from([*NAMES]))
     shown = renamed(data, name, PLACEHOLDER)
     bare = text[1:-1] if text[0] in "'\"" and text[-1] == text[0] else text
-    bare = {"null": None, "~": None, "&a": None, "a #b": "a"}.get(bare, bare)
+    bare = {"null": None, "~": None, "&a": None, "#a": None, "a #b": "a"}.get(bare, bare)
     return dumped(shown).replace(PLACEHOLDER, text), NAMES[text], renamed(data, name, bare), text
 
 
