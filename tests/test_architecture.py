@@ -13,6 +13,7 @@ LIBRARY = ROOT / "src" / "vibroimpact"
 FILES = sorted(LIBRARY.rglob("*.py"))
 KERNELS = LIBRARY / "integration" / "kernels"
 SCRIPTS = sorted((ROOT / "workflow" / "scripts").glob("*.py"))
+STAGES = [ROOT / "workflow" / "scripts" / file.name for file in (LIBRARY / "stages").glob("[a-z]*")]
 RULES = sorted((ROOT / "workflow" / "rules").glob("*.smk"))
 EXAMPLES = sorted((ROOT / "examples").glob("*/*.py"))
 
@@ -58,6 +59,7 @@ PACKAGES = (
     "validation",
     "reports",
     "figures",
+    "stages",
     "stability_command",
     "study_folder",
     "cli",
@@ -286,6 +288,13 @@ def test_errors_are_not_swallowed_and_warnings_not_silenced():
 def test_scripts_define_nothing(script):
     defined = (ast.FunctionDef, ast.ClassDef, ast.Lambda)
     assert [node for node in ast.walk(tree_of(script)) if isinstance(node, defined)] == []
+
+
+@pytest.mark.parametrize("script", STAGES, ids=lambda file: file.stem)
+def test_a_script_calls_one_function_of_the_library(script):
+    first, second, call = tree_of(script).body[1:]
+    assert isinstance(first, ast.ImportFrom) and isinstance(second, ast.ImportFrom)
+    assert ast.unparse(call).startswith(f"run_job({script.stem}.make, snakemake")
 
 
 def rules():

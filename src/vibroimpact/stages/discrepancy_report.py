@@ -1,0 +1,45 @@
+"""Draw the figures of a diagnosis and write its page."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from vibroimpact.config.schema import Config
+from vibroimpact.diagnosis.identified.structure_file import model_from
+from vibroimpact.figures.diagnosis.sheets import diagnosis_figures
+from vibroimpact.records import read_record, write_text
+from vibroimpact.reports.discrepancy_page import FREE_RUNS, NOISE, discrepancy_page
+from vibroimpact.verdict.content import read_verdict
+
+
+def make(given: Any, made: Any, params: Any) -> None:
+    """Draw the figures of a diagnosis and write its page.
+
+    given: verdict, evidence, spectra. made: page; the figures lie in figures/ of its folder.
+    params: model in plain values, name of the campaign.
+    """
+    model = model_from(params.model)
+    with_model = isinstance(model, Config)
+    folder = Path(made.page).parent
+    verdict = read_verdict(given.verdict)
+    sheets = diagnosis_figures(
+        read_record(given.evidence),
+        read_record(given.spectra),
+        verdict,
+        model if with_model else None,
+    )
+    for sheet in sheets:
+        sheet.save(folder / "figures")
+    shown = [folder / "figures" / f"{sheet.name}.png" for sheet in sheets if sheet.tables]
+    write_text(
+        discrepancy_page(
+            params.name,
+            verdict,
+            shown,
+            FREE_RUNS if with_model else NOISE,
+            str(folder / "model_updated.yaml"),
+        ),
+        made.page,
+    )
+    print(f"{made.page} written, {len(shown)} figures")
