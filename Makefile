@@ -58,24 +58,25 @@ reliability: $(READY) ## the tests of faults and bad input: writes docs/reliabil
 	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal --hypothesis-profile thorough \
 		--reliability
 
-lint: $(READY) ## formatting, static checks and types
+lint: $(READY) ## formatting, static checks, types; sizes beside their limits
 	$(BIN)/ruff format --check
 	$(BIN)/ruff check
-	$(BIN)/snakefmt --check Snakefile workflow examples src/vibroimpact/study_folder
+	$(BIN)/snakefmt --check Snakefile workflow evidence/rules examples src/vibroimpact/study_folder
 	$(BIN)/mypy
 	@$(BIN)/python tests/test_typed.py
+	@$(BIN)/python -m evidence.size
 
 format: $(READY) ## format Python files and rules
 	$(BIN)/ruff check --fix --select I
 	$(BIN)/ruff format
-	$(BIN)/snakefmt Snakefile workflow examples src/vibroimpact/study_folder
+	$(BIN)/snakefmt Snakefile workflow evidence/rules examples src/vibroimpact/study_folder
 
 judges: $(READY_JUDGES) ## tests against other codes, in an environment of their own
 	.venv-judges/bin/python -m pytest tests/judges -rs
 
 benchmark: $(READY_BENCHMARK) ## speed beside other codes: writes docs/performance.md
-	.venv-benchmark/bin/python -m benchmarks.work_precision
-	.venv-benchmark/bin/python -m benchmarks
+	.venv-benchmark/bin/python -m evidence.benchmarks.work_precision
+	.venv-benchmark/bin/python -m evidence.benchmarks
 
 docs: $(READY_DOCS) ## the documentation site: docs/_build/html/index.html
 	.venv-docs/bin/sphinx-build -q -W --keep-going -b html docs docs/_build/html

@@ -22,13 +22,12 @@ include: "workflow/rules/figures.smk"
 include: "workflow/rules/measured.smk"
 include: "workflow/rules/discrepancy.smk"
 include: "workflow/rules/supports_prediction.smk"
-include: "workflow/rules/acceptance_files.smk"
-include: "workflow/rules/acceptance.smk"
 include: "workflow/rules/timing.smk"
-include: "workflow/rules/equivalent_law.smk"
-include: "workflow/rules/validation_convergence.smk"
-include: "workflow/rules/validation_judges.smk"
-include: "workflow/rules/validation.smk"
+
+
+if (ROOT / "evidence").is_dir():
+
+    include: "evidence/rules/evidence.smk"
 
 
 localrules:

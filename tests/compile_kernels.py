@@ -14,7 +14,7 @@ import numpy as np
 
 def library_kernel():
     """Integrate a mass between stops for a few steps."""
-    from tests.oscillator import oscillator
+    from tests.support.oscillator import oscillator
     from vibroimpact.integration.batch import Schedule, integrate_batch
     from vibroimpact.integration.kernels.lanes import LANES
 
@@ -29,7 +29,7 @@ def library_kernel():
 
 def truth_kernel():
     """Simulate a short record of the tube with the other code."""
-    from vibroimpact_truth.campaign import Plan, forces, simulate_records
+    from evidence.truth.campaign import Plan, forces, simulate_records
 
     plan = Plan((1,), levels=((10.0, 1.3, "fit"),), duration=0.05)
     simulate_records(plan, forces(plan))

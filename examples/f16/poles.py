@@ -20,8 +20,8 @@ from vibroimpact.identify.lscf import NormalEquations
 from vibroimpact.identify.ods import deflection_shape
 from vibroimpact.identify.peak import LEVELS, find_peak, fit_peak
 from vibroimpact.identify.stabilisation import stabilisation_chart, stable_column
+from vibroimpact.io.records import write_table
 from vibroimpact.linear.poles import frequency_of
-from vibroimpact.records import write_table
 from vibroimpact.spectra.window_leakage import spectral_kernel
 
 PERIOD_SAMPLES = 8192

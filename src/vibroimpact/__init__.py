@@ -57,8 +57,8 @@ PUBLIC = {
     "Verdict": "verdict.content",
     "virtual_supports": "diagnosis.supports",
     "stability": "flow.stability",
-    "read_record": "records",
-    "write_record": "records",
+    "read_record": "io.records",
+    "write_record": "io.records",
     "configurations": "study_folder.shared_files",
     "workflow_snakefile": "study_folder.shared_files",
 }

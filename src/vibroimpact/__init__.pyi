@@ -36,12 +36,12 @@ from .equivalent_support.study_answer import equivalent as equivalent
 from .flow.stability import stability as stability
 from .identify.estimate import Estimate as Estimate
 from .identify.identify_case import identify_case as identify_case
+from .io.records import read_record as read_record
+from .io.records import write_record as write_record
 from .linear.modes import natural_frequencies as natural_frequencies
 from .linear.responses import frf as frf
 from .measured_support.equivalent_of import MeasuredSupports as MeasuredSupports
 from .measured_support.equivalent_of import equivalent_of as equivalent_of
-from .records import read_record as read_record
-from .records import write_record as write_record
 from .reduction.basis_accuracy import basis_frequency_errors as basis_frequency_errors
 from .reduction.model_file import read_model as read_model
 from .reduction.model_file import write_model as write_model

@@ -164,7 +164,8 @@ def _compare(options: argparse.Namespace) -> int:
     from vibroimpact.config.problems import ConfigError
     from vibroimpact.config.reading import load_config
     from vibroimpact.diagnosis.measurement.comparable import comparison_problems
-    from vibroimpact.records import RecordError
+    from vibroimpact.io.records import RecordError
+    from vibroimpact.io.signal_files.signals import ImportProblem
     from vibroimpact.reports.linear_comparison import (
         NotComparable,
         comparison_text,
@@ -172,7 +173,6 @@ def _compare(options: argparse.Namespace) -> int:
         linear_comparison,
         lowest_responses,
     )
-    from vibroimpact.signal_files.signals import ImportProblem
 
     try:
         config = load_config(options.model)
@@ -356,7 +356,7 @@ def _measured_files(config) -> tuple[str, list[str]]:
     """Return ("; FILE: duration and rate" of each measured file of a study, their problems)."""
     from vibroimpact.campaign.file import CampaignError, checked_description
     from vibroimpact.excitation.force_files import ForceFileError, read_force, require_lasting
-    from vibroimpact.records import RecordError
+    from vibroimpact.io.records import RecordError
 
     told, problems = "", []
     force, record, step = config.excitation, config.record, config.integration
@@ -380,7 +380,7 @@ def _measured_files(config) -> tuple[str, list[str]]:
 def _sidecar(path: str) -> tuple[str | None, list[str]]:
     """Return (what the campaign.yaml of a folder of measurements is, its problems)."""
     from vibroimpact.campaign.importing.sidecar import read_sidecar
-    from vibroimpact.signal_files.signals import ImportProblem
+    from vibroimpact.io.signal_files.signals import ImportProblem
 
     try:
         sidecar = read_sidecar(path)

@@ -116,7 +116,7 @@ def _span(low: float, high: float) -> str:
 def _write(found: Stability, folder: Path) -> None:
     """Write the tables and the figure."""
     from .figures.stability import stability_figure
-    from .records import write_table
+    from .io.records import write_table
 
     folder.mkdir(parents=True, exist_ok=True)
     write_table([row.table_row() for row in found.rows], folder / "stability.csv")

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from tests.tiny_study import ROOT, tiny_values
+from tests.support.tiny_study import ROOT, tiny_values
 
 SCRIPT = Path(__file__).with_name("slurm_on_loopback.sh")
 LINK = Path("/etc/slurm/slurm.conf")

@@ -21,7 +21,7 @@ PROFILES = sorted((ROOT / "workflow" / "profiles").glob("*/config.yaml"))
 def asked():
     """{rule without its underscore: (MB, minutes)} of the first attempt."""
     found = {}
-    for file in [*ROOT.glob("workflow/rules/*.smk"), *ROOT.glob("examples/*/*.smk")]:
+    for file in [*ROOT.glob("*/rules/*.smk"), *ROOT.glob("examples/*/*.smk")]:
         parts = re.split(r"^ *(?:rule|checkpoint) (\w+):\n", file.read_text(), flags=re.M)
         for name, body in zip(parts[1::2], parts[2::2], strict=True):
             if "resources:" in body:

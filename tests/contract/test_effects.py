@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tests.effect_values import term_at, with_term
-from tests.straight_path import straight_path
+from tests.support.effect_values import term_at, with_term
+from tests.support.straight_path import straight_path
 from vibroimpact.config.reading import check_config
 from vibroimpact.effects.effect import TESTS
 from vibroimpact.effects.registry import EFFECTS

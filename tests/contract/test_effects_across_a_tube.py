@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from evidence.truth.campaign import Plan
+from evidence.truth.geometry import Holder, Straight, Tube
+from evidence.truth.model_file import model_of
 from vibroimpact.effects.lateral_stinger import across_force
 from vibroimpact.effects.registry import EFFECTS
-from vibroimpact_truth.campaign import Plan
-from vibroimpact_truth.geometry import Holder, Straight, Tube
-from vibroimpact_truth.model_file import model_of
 
 FORCE_N = (2.0, 1.5)
 

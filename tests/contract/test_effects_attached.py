@@ -7,7 +7,7 @@ from dataclasses import fields, is_dataclass
 import numpy as np
 import pytest
 
-from tests.effect_values import term_at, with_term
+from tests.support.effect_values import term_at, with_term
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.config.reading import check_config
 from vibroimpact.diagnosis.comparison import Comparison

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.sound_campaign import sound_campaign
+from tests.support.sound_campaign import sound_campaign
 from vibroimpact.campaign.base_motion import base_motion_rows
 from vibroimpact.campaign.checks.file_checks import check_campaign
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from tests.straight_path import straight_path
+from tests.support.straight_path import straight_path
 from vibroimpact.campaign.file import write_campaign
 from vibroimpact.campaign.importing.assemble import import_folder
 from vibroimpact.config.reading import check_config
@@ -89,7 +89,7 @@ def test_one_sided_stop_of_a_beam_is_named_from_universal_files(tmp_path):
 
 def made(folder, *arguments):
     """A campaign of the independent code in a folder."""
-    command = [sys.executable, "-m", "vibroimpact_truth", "one", "--no-twin", "--duration", "10"]
+    command = [sys.executable, "-m", "evidence.truth", "one", "--no-twin", "--duration", "10"]
     subprocess.run(
         [*command, "--out", str(folder / "x.nc"), "--levels", LEVELS, *arguments], check=True
     )

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from tests.discrepancy_results import made_up_verdict
-from tests.figure_layout import layout_faults
+from tests.support.discrepancy_results import made_up_verdict
+from tests.support.figure_layout import layout_faults
 from vibroimpact.figures.diagnosis.holding import chosen_channels, chosen_levels
 from vibroimpact.figures.diagnosis.law import force_error, median_law, pressed, telling_level
 from vibroimpact.figures.diagnosis.place import place_figure
@@ -170,7 +170,7 @@ def test_no_text_is_cut_or_covered(size):
     faults = {
         sheet.name: layout_faults(sheet.figure)
         for sheet in sheets
-        if sheet.name != "diagnosis_place"  # of tests/unit/test_figure_layout
+        if sheet.name != "diagnosis_place"  # of tests/figures/test_figure_layout
     }
     assert {name: found for name, found in faults.items() if found} == {}
 

@@ -5,12 +5,12 @@ import pytest
 from scipy.signal import resample_poly
 
 import vibroimpact as vi
-from tests.contact_truth import contact_campaign
+from tests.support.contact_truth import contact_campaign
 from vibroimpact.diagnosis.comparison import Comparison
 from vibroimpact.diagnosis.evidence import evidence_of
 from vibroimpact.diagnosis.explanations import Point, Structure, Term
 from vibroimpact.diagnosis.measurement.signals import signals_of
-from vibroimpact.records import read_record, write_record
+from vibroimpact.io.records import read_record, write_record
 
 LEVELS = ((0.5, 1.3, "fit"), (8.0, 1.3, "fit"), (12.0, 1.3, "holdout"))
 DURATION_S = 6.0

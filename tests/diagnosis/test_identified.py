@@ -13,7 +13,7 @@ import yaml
 from scipy import linalg
 
 from docs.examples import two_masses as example
-from tests import two_masses
+from tests.support import two_masses
 from vibroimpact import diagnose
 from vibroimpact.campaign.file import write_campaign
 from vibroimpact.campaign.importing.assemble import import_folder
@@ -26,7 +26,7 @@ from vibroimpact.diagnosis.identified.levels import long_record_lines
 from vibroimpact.diagnosis.identified.records import unsettled_periods
 from vibroimpact.diagnosis.identified.trial import Trial
 from vibroimpact.figures.diagnosis.sheets import diagnosis_figures
-from vibroimpact.records import read_record, read_table
+from vibroimpact.io.records import read_record, read_table
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.verdict.content import read_verdict
 

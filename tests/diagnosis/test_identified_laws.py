@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy import linalg
 
-from tests import joint
+from tests.support import joint
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.config.measured_structure import MeasuredStructure
 from vibroimpact.diagnosis.diagnose import run_diagnosis

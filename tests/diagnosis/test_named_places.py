@@ -5,13 +5,13 @@ matrices.
 import numpy as np
 import pytest
 
-from tests import own_matrices
+from evidence.truth.model_file import model_of
+from tests.support import own_matrices
 from vibroimpact.campaign.file import read_campaign
 from vibroimpact.config.reading import ConfigError, check_config
 from vibroimpact.diagnosis.measurement.attached_model import attach
 from vibroimpact.diagnosis.measurement.comparable import comparison_problems, model_rows
 from vibroimpact.diagnosis.measurement.named_places import point_at
-from vibroimpact_truth.model_file import model_of
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ band.
 import numpy as np
 import pytest
 
-from tests.band_campaign import campaign
+from tests.support.band_campaign import campaign
 from vibroimpact.diagnosis.measurement.signals import noise_of, signals_of
 
 RATE, BAND = 2048.0, (5.0, 200.0)

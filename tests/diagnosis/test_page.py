@@ -5,10 +5,10 @@ import re
 import numpy as np
 import pytest
 
-from tests.discrepancy_results import made_up_verdict
+from tests.support.discrepancy_results import made_up_verdict
 from vibroimpact.diagnosis.diagnose_command import summary
-from vibroimpact.display_units import display_unit
 from vibroimpact.figures.diagnosis.ranking import ranking_figure
+from vibroimpact.io.display_units import display_unit
 from vibroimpact.reports.discrepancy_page import discrepancy_page
 from vibroimpact.reports.explanations import best_places, explanations_of
 from vibroimpact.reports.verdict_words import verdict_sentence

@@ -5,7 +5,7 @@ import io
 import pytest
 
 from vibroimpact.diagnosis.progress import ProgressBar
-from vibroimpact.run_cost import SIMULATED, count_simulated
+from vibroimpact.diagnosis.run_cost import SIMULATED, count_simulated
 
 
 class Terminal(io.StringIO):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from tests.contact_truth import contact_campaign
+from tests.support.contact_truth import contact_campaign
 from vibroimpact.cli import main
 from vibroimpact.diagnosis.explanations import Point, Structure
 from vibroimpact.diagnosis.measurement.signals import signals_of

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.straight_path import straight_path
+from tests.support.straight_path import straight_path
 from vibroimpact.diagnosis.bench import holding_lines
 from vibroimpact.diagnosis.catalogue import far_terms, halfway, locations
 from vibroimpact.diagnosis.explanations import Point, Term

@@ -8,7 +8,7 @@ PAGES = [
     ROOT / "README.md",
     ROOT / "CHANGELOG.md",
     ROOT / "CONTRIBUTING.md",
-    ROOT / "src" / "vibroimpact_truth" / "README.md",
+    ROOT / "evidence" / "truth" / "README.md",
     *sorted(
         page
         for page in (ROOT / "docs").rglob("*.md")

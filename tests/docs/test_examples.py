@@ -19,6 +19,7 @@ RULES = "\n".join(
     for file in [
         ROOT / "Snakefile",
         *ROOT.glob("workflow/rules/*.smk"),
+        *ROOT.glob("evidence/rules/*.smk"),
         *ROOT.rglob("examples/**/*.smk"),
     ]
 )

@@ -5,7 +5,7 @@ import subprocess
 
 import pytest
 
-from tests.tiny_study import TinyStudy, tiny_values
+from tests.support.tiny_study import TinyStudy, tiny_values
 
 
 @pytest.fixture(scope="session")

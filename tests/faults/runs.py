@@ -13,7 +13,7 @@ from pathlib import Path
 import netCDF4
 import yaml
 
-from tests.tiny_study import ROOT
+from tests.support.tiny_study import ROOT
 
 PATIENCE_S = 120.0
 

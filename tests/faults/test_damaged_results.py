@@ -8,7 +8,7 @@ import xarray as xr
 
 from vibroimpact.campaign.file import read_campaign
 from vibroimpact.config.stage_keys import answer_digest
-from vibroimpact.records import (
+from vibroimpact.io.records import (
     RecordError,
     read_dataset,
     read_json,

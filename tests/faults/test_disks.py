@@ -10,15 +10,15 @@ import sys
 import numpy as np
 import pytest
 import xarray as xr
+from tests.tiny_study import ROOT, TinyStudy, tiny_values
 
 from tests.faults.runs import Runs, bits
-from tests.tiny_study import ROOT, TinyStudy, tiny_values
-from vibroimpact.records import RecordError, RecordFile, write_cells, write_record, write_text
-from vibroimpact.whole_file import problem_of, whole_file
+from vibroimpact.io.records import RecordError, RecordFile, write_cells, write_record, write_text
+from vibroimpact.io.whole_file import problem_of, whole_file
 from vibroimpact_workflow.run_lock import take_folder
 
 RECORD = "results/tiny/records/load_20_gap_0.0001_seed_0.nc"
-REDIRECT = "from vibroimpact.job_log import redirect_output as to"
+REDIRECT = "from vibroimpact.io.job_log import redirect_output as to"
 MILLION = np.random.default_rng(1).normal(size=10**6)
 SERIES = xr.Dataset({"force": ("time", MILLION)})
 
@@ -106,7 +106,7 @@ def test_a_log_on_a_read_only_disk_is_named(content, small_disk):
 
 
 def test_an_error_with_a_sentence_ends_a_log_without_traceback(tmp_path):
-    read = "from vibroimpact.records import read_table as read; read('none.csv')"
+    read = "from vibroimpact.io.records import read_table as read; read('none.csv')"
     done = python(f"{REDIRECT}; to('a.log'); print('begun'); {read}", tmp_path)
     assert done.returncode == 1
     assert (tmp_path / "a.log").read_text().splitlines() == [

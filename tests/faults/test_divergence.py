@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.tiny_study import tiny_values
+from tests.support.tiny_study import tiny_values
 from vibroimpact.config.reading import check_config
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.study.cases import Case

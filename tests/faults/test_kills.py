@@ -9,7 +9,7 @@ import signal
 import pytest
 
 from tests.faults.runs import Runs, bits
-from tests.tiny_study import tiny_values
+from tests.support.tiny_study import tiny_values
 
 pytestmark = pytest.mark.slow
 RECORD = "results/tiny/records/load_20_gap_0.0001_seed_0.nc"

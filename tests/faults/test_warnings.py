@@ -5,9 +5,9 @@ import sys
 
 import pytest
 import yaml
+from tests.tiny_study import ROOT
 
 from tests.faults.runs import Runs
-from tests.tiny_study import ROOT
 from vibroimpact_workflow.run_report import warnings_text
 
 WARNING = "RuntimeWarning: divide by zero encountered in divide"
@@ -38,7 +38,7 @@ def test_a_job_that_warns_is_found_by_its_log(expression, warned, tmp_path, reli
     program = f"""
 import sys
 sys.path.insert(0, {str(ROOT / "src")!r})
-from vibroimpact.job_log import redirect_output
+from vibroimpact.io.job_log import redirect_output
 import numpy
 redirect_output("job.log")
 {expression}

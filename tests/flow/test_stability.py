@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from tests.straight_path import straight_path
+from tests.support.straight_path import straight_path
 from vibroimpact.cli import main
 from vibroimpact.config.problems import ConfigError
 from vibroimpact.flow.stability import NoFlow

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
-from tests.tiny_study import TinyStudy, tiny_values
-from vibroimpact.records import write_record
+from tests.support.tiny_study import TinyStudy, tiny_values
+from vibroimpact.io.records import write_record
 
 CONVENTIONS = "cf:1.11"
 # In a campaign file `time` is the name that its contract gives to the time of a record, in seconds

@@ -5,9 +5,7 @@ step by step.
 import numpy as np
 import pytest
 
-from tests.oracle import newmark_contact
-from vibroimpact.reduction.reduced_model import build_model
-from vibroimpact.validation.judges.impacts import (
+from evidence.validation.judges.impacts import (
     apart,
     impact_config,
     impact_force,
@@ -19,7 +17,9 @@ from vibroimpact.validation.judges.impacts import (
     modes_rows,
     our_impacts,
 )
-from vibroimpact.validation.judges.presence import JudgeAbsent
+from evidence.validation.judges.presence import JudgeAbsent
+from tests.support.oracle import newmark_contact
+from vibroimpact.reduction.reduced_model import build_model
 
 SHORT_S, ALL_HZ = 0.04, 1.0e9
 COARSE = {"structure.mesh.elements_per_span": 6, "structure.mesh.elements_per_bend": 16}

@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from vibroimpact.structure.tube import build_structure
-from vibroimpact.validation.judges.calculix import karman_factor, straight_tube_frequencies
-from vibroimpact.validation.judges.modes import (
+from evidence.validation.judges.calculix import karman_factor, straight_tube_frequencies
+from evidence.validation.judges.modes import (
     beam_frequencies,
     calculix_checks,
     opensees_checks,
     oval_bend_rows,
 )
-from vibroimpact.validation.judges.opensees import tube_nodes
-from vibroimpact.validation.judges.presence import JudgeAbsent
+from evidence.validation.judges.opensees import tube_nodes
+from evidence.validation.judges.presence import JudgeAbsent
+from vibroimpact.structure.tube import build_structure
 
 
 def failed(checks):

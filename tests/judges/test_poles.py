@@ -2,8 +2,8 @@
 
 import pytest
 
-from vibroimpact.validation.judges.poles import pyoma_checks, sdypy_checks, spectrum_checks
-from vibroimpact.validation.judges.presence import JudgeAbsent
+from evidence.validation.judges.poles import pyoma_checks, sdypy_checks, spectrum_checks
+from evidence.validation.judges.presence import JudgeAbsent
 
 # What these packages and theirs warn of at import or at poles they throw away themselves.
 pytestmark = pytest.mark.filterwarnings(

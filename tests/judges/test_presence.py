@@ -4,10 +4,10 @@ import sys
 
 import pytest
 
-from vibroimpact.figures.validation.judges import judged_impacts
-from vibroimpact.validation.judges import presence as judges_presence
-from vibroimpact.validation.judges import table as judges
-from vibroimpact.validation.judges.presence import JudgeAbsent
+from evidence.validation.figures.judges import judged_impacts
+from evidence.validation.judges import presence as judges_presence
+from evidence.validation.judges import table as judges
+from evidence.validation.judges.presence import JudgeAbsent
 
 
 @pytest.fixture

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy import linalg
 
+from evidence.validation.judges.opensees import NODES_FROM
+from evidence.validation.judges.presence import JudgeAbsent, opensees
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.structure.tube import build_structure
-from vibroimpact.validation.judges.opensees import NODES_FROM
-from vibroimpact.validation.judges.presence import JudgeAbsent, opensees
 
 YOUNG, POISSON, DENSITY = 2.0e11, 0.3, 8000.0
 AREA, FIRST, SECOND = 4.0e-4, 3.333e-9, 5.333e-8

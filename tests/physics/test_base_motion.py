@@ -5,6 +5,8 @@ independent code, and what sensors show of the base.
 import numpy as np
 import pytest
 
+from evidence.truth.campaign import Plan, forces
+from evidence.truth.campaign import simulate_records as true_records
 from vibroimpact.campaign.base_motion import integrated, relative_to_base
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.campaign.signals import campaign_signals
@@ -16,8 +18,6 @@ from vibroimpact.diagnosis.measurement.stretches import whole_rates
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.linear.responses import frf
 from vibroimpact.reduction.reduced_model import build_model
-from vibroimpact_truth.campaign import Plan, forces
-from vibroimpact_truth.campaign import simulate_records as true_records
 
 RATE, GAP = 2048.0, 2.8886e-4
 APEX, LEG = (0.0, 0.0, 1.0), (-0.3, 0.0, 0.55)

@@ -7,7 +7,8 @@ import pytest
 from scipy import special
 from scipy.sparse.linalg import spsolve
 
-from tests.straight_path import straight_path
+from evidence.validation.reference.frequencies import ROOTS
+from tests.support.straight_path import straight_path
 from vibroimpact.config.reading import check_config
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.effects.fluid_added_mass_damping import EFFECT
@@ -20,7 +21,6 @@ from vibroimpact.structure.fluid import (
     viscous_damping_ratio,
 )
 from vibroimpact.structure.tube import build_structure
-from vibroimpact.validation.reference.frequencies import ROOTS
 
 DIAMETER, WALL, LENGTH = 0.02222, 0.00127, 1.2
 INNER = DIAMETER - 2.0 * WALL

@@ -8,7 +8,7 @@ c doubles the first mode's damping ratio at each k. At k = 1e3 N/m the first fre
 import numpy as np
 import pytest
 
-from tests.linear_records import LinearRecords, statistics
+from tests.support.linear_records import LinearRecords, statistics
 from vibroimpact.identify.identify_case import identify_case
 from vibroimpact.linear.poles import first_pole
 from vibroimpact.linear.responses import frf

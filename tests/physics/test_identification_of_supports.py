@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import yaml
 
-from tests.linear_records import LinearRecords, statistics
+from tests.support.linear_records import LinearRecords, statistics
 from vibroimpact.config.reading import check_config
 from vibroimpact.identify.estimate import table_rows
 from vibroimpact.identify.identify_case import identify_case

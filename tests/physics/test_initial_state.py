@@ -5,7 +5,7 @@ import copy
 import numpy as np
 import pytest
 
-from tests.straight_path import straight_path
+from tests.support.straight_path import straight_path
 from vibroimpact.config.reading import ConfigError, check_config
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.structure.beam_elements import section_beam

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.oracle import exact_contact, newmark_contact
+from tests.support.oracle import exact_contact, newmark_contact
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.integration import batch as integrate
 from vibroimpact.integration import kernel_layout as layout

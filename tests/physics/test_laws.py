@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import ellipk
 
-from tests.oscillator import oscillator
+from tests.support.oscillator import oscillator
 from vibroimpact.contact.laws import ContactLaws, LocalLaws
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.integration.batch import Schedule, integrate_batch

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.measured_campaigns import LinearCampaigns, Y, campaign_of_records, without_force
+from tests.support.measured_campaigns import LinearCampaigns, Y, campaign_of_records, without_force
 from vibroimpact.campaign.file import (
     Channel,
     Level,

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tests.oscillator import oscillator
-from tests.straight_path import straight_path
+from tests.support.oscillator import oscillator
+from tests.support.straight_path import straight_path
 from vibroimpact.config.reading import check_config
 from vibroimpact.integration.every_step import integrate_every_step
 from vibroimpact.reduction.reduced_model import build_model

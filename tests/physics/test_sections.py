@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import spsolve
 
+from evidence.validation.reference.frequencies import ROOTS, plane_frequencies
 from vibroimpact.config.reading import check_config
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.structure.tube import build_structure
-from vibroimpact.validation.reference.frequencies import ROOTS, plane_frequencies
 
 STEEL = {"young_modulus_Pa": 2.0e11, "poisson_ratio": 0.3, "density_kg_per_m3": 8000.0}
 WIDE = {"kind": "rectangle", "sides_m": [0.010, 0.040]}  # thin along the first axis

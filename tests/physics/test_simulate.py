@@ -9,8 +9,8 @@ import pytest
 
 from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.records import read_record
-from vibroimpact.stopwatch import Stopwatch
+from vibroimpact.io.records import read_record
+from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.study.case_spectra import case_spectra
 from vibroimpact.study.cases import Case
 from vibroimpact.study.record_variables import split_record

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.straight_path import straight_path
+from tests.support.straight_path import straight_path
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.config.reading import check_config
 from vibroimpact.diagnosis.measurement.attached_model import attach

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from scipy.signal import lsim
 
-from tests.straight_path import straight_path
+from evidence.validation.reference.frequencies import straight_tube
+from tests.support.straight_path import straight_path
 from vibroimpact.config.reading import check_config
 from vibroimpact.excitation.correlated_field import POINTS, field_covariance
 from vibroimpact.excitation.force_channels import force_channels
@@ -23,7 +24,6 @@ from vibroimpact.reduction.ritz_basis import eigenmodes, uncoupled_groups
 from vibroimpact.spectra.welch import psd_statistics, segment_spectra
 from vibroimpact.study.cases import Case
 from vibroimpact.study.simulation import simulate_cases
-from vibroimpact.validation.reference.frequencies import straight_tube
 
 LENGTH, DIAMETER, WALL, DENSITY = 2.0, 0.02, 0.001, 8000.0
 MASS_PER_LENGTH = np.pi * (DIAMETER - WALL) * WALL * DENSITY

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.properties.guarded import Tried, folder_of_example, guarded
-from tests.sound_campaign import sound_campaign
+from tests.support.sound_campaign import sound_campaign
 from vibroimpact.campaign.checks.file_checks import check_file, refused, usable_signals
 from vibroimpact.campaign.file import CampaignError, checked_description, measured_values
 from vibroimpact.campaign.signals import campaign_signals

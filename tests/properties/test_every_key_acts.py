@@ -12,6 +12,7 @@ from dataclasses import fields, is_dataclass
 import numpy as np
 import pytest
 
+from tests.config.test_config import leaves, put
 from tests.properties.full_configurations import (
     BASE,
     CHAIN,
@@ -21,7 +22,6 @@ from tests.properties.full_configurations import (
     SECTIONS,
     changed,
 )
-from tests.unit.test_config import leaves, put
 from vibroimpact.config.declared_keys import declared_sections
 from vibroimpact.config.idle_keys import idle_keys
 from vibroimpact.config.problems import ConfigError

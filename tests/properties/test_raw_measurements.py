@@ -19,7 +19,7 @@ from vibroimpact.campaign.file import (
     write_campaign,
 )
 from vibroimpact.campaign.importing.assemble import import_folder
-from vibroimpact.signal_files.signals import ImportProblem
+from vibroimpact.io.signal_files.signals import ImportProblem
 
 # pyuff leaves the file that it writes a binary set to unclosed; nothing else writes such files.
 pytestmark = [

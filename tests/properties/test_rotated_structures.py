@@ -5,7 +5,7 @@ supports and its effect has the same receptances.
 import numpy as np
 import pytest
 
-from tests.effect_values import term_at, with_term
+from tests.support.effect_values import term_at, with_term
 from vibroimpact.config.reading import check_config
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.reduction.reduced_model import build_model

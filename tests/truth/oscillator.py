@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from vibroimpact_truth import kernel
-from vibroimpact_truth.reduction import exact_propagator
-from vibroimpact_truth.rig import LAWS
+from evidence.truth import kernel
+from evidence.truth.reduction import exact_propagator
+from evidence.truth.rig import LAWS
 
 
 def simulate(

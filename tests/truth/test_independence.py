@@ -7,12 +7,12 @@ import netCDF4
 import numpy as np
 import pytest
 
-import vibroimpact_truth
-from vibroimpact_truth import table
-from vibroimpact_truth.__main__ import main
-from vibroimpact_truth.amounts import AMOUNTS
-from vibroimpact_truth.campaign import Plan
-from vibroimpact_truth.draw import (
+import evidence.truth
+from evidence.truth import table
+from evidence.truth.__main__ import main
+from evidence.truth.amounts import AMOUNTS
+from evidence.truth.campaign import Plan
+from evidence.truth.draw import (
     OTHER_LAWS,
     POOLS,
     SHARES,
@@ -21,32 +21,39 @@ from vibroimpact_truth.draw import (
     draw,
     kinds,
 )
-from vibroimpact_truth.hidden import IN_RIG, family_of
-from vibroimpact_truth.measure import SENSOR_STRANGERS
+from evidence.truth.hidden import IN_RIG, family_of
+from evidence.truth.measure import SENSOR_STRANGERS
 
-PACKAGE = Path(vibroimpact_truth.__file__).parent
+PACKAGE = Path(evidence.truth.__file__).parent
 ROOT = PACKAGE.parents[1]
 
 
 def imported(file):
     """Top-level packages that a file imports."""
-    tops = set()
+    return {name.split(".")[0] for name in names_imported(file)}
+
+
+def names_imported(file):
+    """Dotted names of the modules that a file imports."""
+    names = set()
     for node in ast.walk(ast.parse(file.read_text())):
         if isinstance(node, ast.Import):
-            tops |= {alias.name.split(".")[0] for alias in node.names}
-        elif isinstance(node, ast.ImportFrom):
-            tops.add((node.module or "").split(".")[0])
-    return tops
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and not node.level:
+            names.add(node.module)
+    return names
 
 
 def test_truth_package_and_library_are_independent():
     files = sorted(PACKAGE.rglob("*.py"))
     assert len(files) > 10
     assert [file.name for file in files if "vibroimpact" in imported(file)] == []
+    own = {name for file in files for name in names_imported(file) if name.startswith("evidence")}
+    assert {name for name in own if not (name + ".").startswith("evidence.truth.")} == set()
     assert [
         file.name
         for file in (ROOT / "src" / "vibroimpact").rglob("*.py")
-        if "vibroimpact_truth" in imported(file)
+        if "evidence" in imported(file)
     ] == []
 
 

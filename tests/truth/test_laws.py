@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from evidence.truth import kernel
+from evidence.truth.geometry import Holder, Straight
+from evidence.truth.hidden import breathing_crack
+from evidence.truth.march import velocities
+from evidence.truth.planes import Planes
+from evidence.truth.reduction import reduce_rig
+from evidence.truth.rig import FRICTION_LAWS, Rig
 from tests.truth.oscillator import simulate
-from vibroimpact_truth import kernel
-from vibroimpact_truth.geometry import Holder, Straight
-from vibroimpact_truth.hidden import breathing_crack
-from vibroimpact_truth.march import velocities
-from vibroimpact_truth.planes import Planes
-from vibroimpact_truth.reduction import reduce_rig
-from vibroimpact_truth.rig import FRICTION_LAWS, Rig
 
 STEP = 1.0e-5
 STIFFNESS, LIMIT = 1.0e6, 2.0  # N/m of all bristles, N

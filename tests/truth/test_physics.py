@@ -9,12 +9,12 @@ import netCDF4
 import numpy as np
 import pytest
 
-from vibroimpact_truth.amounts import AMOUNTS
-from vibroimpact_truth.campaign import BAND, Plan, forces, simulate_records
-from vibroimpact_truth.draw import scene_of
-from vibroimpact_truth.hidden import IN_RIG
-from vibroimpact_truth.scene import sizes
-from vibroimpact_truth.strength import ABOVE_NOISE, BANDS, HIGHEST_HZ, LOWEST_HZ, band_powers
+from evidence.truth.amounts import AMOUNTS
+from evidence.truth.campaign import BAND, Plan, forces, simulate_records
+from evidence.truth.draw import scene_of
+from evidence.truth.hidden import IN_RIG
+from evidence.truth.scene import sizes
+from evidence.truth.strength import ABOVE_NOISE, BANDS, HIGHEST_HZ, LOWEST_HZ, band_powers
 
 DEV_NULL = next(
     (

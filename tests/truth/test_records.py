@@ -5,13 +5,13 @@ the search for an amount.
 import numpy as np
 import pytest
 
-from vibroimpact_truth.campaign import Plan, forces, judged_levels, simulate_records
-from vibroimpact_truth.geometry import Holder, Straight
-from vibroimpact_truth.reduction import reduce_rig
-from vibroimpact_truth.rig import Rig
-from vibroimpact_truth.scene import sizes
-from vibroimpact_truth.strength import strength_by_channel
-from vibroimpact_truth.tune import WIDE, amount_for
+from evidence.truth.campaign import Plan, forces, judged_levels, simulate_records
+from evidence.truth.geometry import Holder, Straight
+from evidence.truth.reduction import reduce_rig
+from evidence.truth.rig import Rig
+from evidence.truth.scene import sizes
+from evidence.truth.strength import strength_by_channel
+from evidence.truth.tune import WIDE, amount_for
 
 Y = (0.0, 1.0, 0.0)
 KINDS = ("displacement", "velocity", "acceleration")

@@ -5,10 +5,10 @@ reference/testbed.md, two independent codes agreeing.
 import numpy as np
 import pytest
 
-from vibroimpact_truth.geometry import TUBES
-from vibroimpact_truth.planes import Planes
-from vibroimpact_truth.reduction import reduce_rig
-from vibroimpact_truth.rig import Rig
+from evidence.truth.geometry import TUBES
+from evidence.truth.planes import Planes
+from evidence.truth.reduction import reduce_rig
+from evidence.truth.rig import Rig
 
 # k [N/m per plate] -> out-of-plane and in-plane frequencies in Hz, Timoshenko, five contact points
 TIMOSHENKO = {

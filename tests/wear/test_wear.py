@@ -8,7 +8,7 @@ import xarray as xr
 import yaml
 
 import vibroimpact as vi
-from tests.tiny_study import tiny_values
+from tests.support.tiny_study import tiny_values
 from vibroimpact.cli import main
 from vibroimpact.wear.depth import YEAR_S, crescent_area, depth_of, segment_area, volume_of
 from vibroimpact.wear.life import Service, wear_life

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.sound_campaign import sound_campaign
+from tests.support.sound_campaign import sound_campaign
 from vibroimpact.campaign.file import write_campaign
 
 ROOT = Path(__file__).parents[2]

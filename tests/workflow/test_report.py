@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from tests.chromium import needs_chromium, opened
+from tests.support.chromium import needs_chromium, opened
 from tests.workflow.test_workflow import ROOT, Study
 from vibroimpact.reports.captions import CATEGORIES, read_caption
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from benchmarks.scheduling import study_of
+from evidence.benchmarks.scheduling import study_of
 from tests.workflow.test_workflow import Study
 
 ROOT = Path(__file__).parents[2]

@@ -21,11 +21,11 @@ import numpy as np
 import pytest
 import yaml
 
-from tests.sound_campaign import sound_campaign
+from tests.support.sound_campaign import sound_campaign
 from vibroimpact.campaign.file import write_campaign
 from vibroimpact.config.reading import check_config
-from vibroimpact.provenance import config_digest
-from vibroimpact.records import write_record
+from vibroimpact.io.provenance import config_digest
+from vibroimpact.io.records import write_record
 
 ROOT = Path(__file__).parents[2]
 STUB = """\

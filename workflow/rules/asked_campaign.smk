@@ -26,7 +26,7 @@ def described(file, force_needed=True):
     Exits with a sentence for everything it states that can not be.
     """
     from vibroimpact.campaign.file import CampaignError, checked_description
-    from vibroimpact.whole_file import RecordError
+    from vibroimpact.io.whole_file import RecordError
 
     try:
         return checked_description(file, force_needed)
@@ -95,7 +95,7 @@ def folder_to_import(folder):
     """
     from vibroimpact.campaign.importing.draft import checked_folder
     from vibroimpact.campaign.importing.raw_files import raw_files
-    from vibroimpact.signal_files.signals import ImportProblem
+    from vibroimpact.io.signal_files.signals import ImportProblem
 
     try:
         if not workflow.is_main_process:

@@ -15,7 +15,7 @@ def begin_run():
 
     Exits with a sentence where another run is at work in it or it cannot be written.
     """
-    from vibroimpact.whole_file import RecordError, remove_left_over
+    from vibroimpact.io.whole_file import RecordError, remove_left_over
     from vibroimpact_workflow.run_lock import FolderTaken, require_past, start_text, take_folder
 
     try:
@@ -47,7 +47,7 @@ def write_files_of_run(folders):
 
 def say_success():
     """Say the headline of the study where this run has completed it, and which jobs warned."""
-    from vibroimpact.records import read_table
+    from vibroimpact.io.records import read_table
     from vibroimpact_workflow.run_report import success_text
 
     say_warnings()
@@ -61,7 +61,7 @@ def say_failure(logs):
 
     logs: the log files that Snakemake wrote of this run.
     """
-    from vibroimpact.whole_file import read_text
+    from vibroimpact.io.whole_file import read_text
     from vibroimpact_workflow.run_report import failure_text
 
     text = failure_text("".join(read_text(file) for file in logs if Path(file).is_file()))

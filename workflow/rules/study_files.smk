@@ -3,7 +3,7 @@ from functools import cache
 
 from snakemake.logging import logger
 from vibroimpact.config.stage_keys import answer_digest, stage_params
-from vibroimpact.provenance import library_digest
+from vibroimpact.io.provenance import library_digest
 from vibroimpact.reports.captions import read_caption
 from vibroimpact.study.cases import all_cases, batches, case_from_id
 from vibroimpact_workflow.model_checks import model_warnings
@@ -50,7 +50,7 @@ TO_SPECTRA = {} if TO_SERIES else SIMULATED
 
 
 @cache
-def library(script):
+def library(script, scripts=SCRIPTS):
     """The digest of the library files that a script imports, as a param: an edit reruns only the
     stages that import the file.
 
@@ -60,7 +60,7 @@ def library(script):
 
     @cache
     def digest():
-        return library_digest(f"{SCRIPTS}/{script}.py", SOURCE)
+        return library_digest(f"{scripts}/{script}.py", SOURCE, as_input(ROOT))
 
     return lambda wildcards: digest()
 

@@ -1,6 +1,6 @@
 """Draw the figures of the model."""
 
-from vibroimpact.job_log import run_job
+from vibroimpact.io.job_log import run_job
 from vibroimpact.stages import figures_model
 
 run_job(figures_model.make, snakemake)

@@ -1,6 +1,6 @@
 """Draw the figures of the responses."""
 
-from vibroimpact.job_log import run_job
+from vibroimpact.io.job_log import run_job
 from vibroimpact.stages import figures_response
 
 run_job(figures_response.make, snakemake)

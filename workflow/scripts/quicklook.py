@@ -1,6 +1,6 @@
 """Check a campaign and draw it."""
 
-from vibroimpact.job_log import run_job
+from vibroimpact.io.job_log import run_job
 from vibroimpact.stages import quicklook
 
 run_job(quicklook.make, snakemake)

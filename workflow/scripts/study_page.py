@@ -1,6 +1,6 @@
 """Write the page of a study and its summary on two pages."""
 
-from vibroimpact.job_log import run_job
+from vibroimpact.io.job_log import run_job
 from vibroimpact.stages import study_page
 
 run_job(study_page.make, snakemake)

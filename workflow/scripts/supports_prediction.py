@@ -1,15 +1,15 @@
 """Write what linear supports predict of the study: one k and c for all, and each its own."""
 
 from vibroimpact.config.stage_settings import StageSettings
+from vibroimpact.equivalent_support import supports_prediction as supports
 from vibroimpact.identify.identify_case import RECORD_READ, SPECTRA_READ
-from vibroimpact.job_log import redirect_output
+from vibroimpact.io.job_log import redirect_output
+from vibroimpact.io.records import read_table, write_table
+from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.linear.support_groups import ALL
-from vibroimpact.records import read_table, write_table
 from vibroimpact.reduction.model_file import read_model
-from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.study.case_files import read_case
 from vibroimpact.study.equivalent_table import EQUIVALENT_COLUMNS
-from vibroimpact.validation.prediction import supports
 
 redirect_output(snakemake.log[0])
 settings, model = snakemake.params.config, read_model(snakemake.input.model)

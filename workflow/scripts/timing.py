@@ -4,8 +4,8 @@ from pathlib import Path
 
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.figures.study.timing import timing
-from vibroimpact.job_log import redirect_output
-from vibroimpact.records import write_table
+from vibroimpact.io.job_log import redirect_output
+from vibroimpact.io.records import write_table
 from vibroimpact.study.timing import study_timing
 
 redirect_output(snakemake.log[0])

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from vibroimpact.config.schema import Config
-from vibroimpact.provenance import config_digest, package_digest
-from vibroimpact.whole_file import RecordError, whole_file
+from vibroimpact.io.provenance import config_digest, package_digest
+from vibroimpact.io.whole_file import RecordError, whole_file
 
 PASSED = Path(".snakemake/vibroimpact_models")  # a file of warnings for each model that passed
 

@@ -18,7 +18,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TextIO
 
-from vibroimpact.whole_file import HOST, RecordError, folder_problem
+from vibroimpact.io.whole_file import HOST, RecordError, folder_problem
 
 RUN = re.compile(r"process \d+ on \S+, begun .*")
 CLOCK_S = 60.0  # that the clocks of two machines may differ

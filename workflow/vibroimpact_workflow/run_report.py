@@ -6,9 +6,9 @@ import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from vibroimpact.records import read_table
+from vibroimpact.io.records import read_table
+from vibroimpact.io.whole_file import problem_of
 from vibroimpact.study.headline import flag_sentences, headline
-from vibroimpact.whole_file import problem_of
 
 # A failed job in the log that Snakemake writes.
 FAILED = re.compile(r"^Error in rule (?P<rule>[^\s:]+).*:\n(?P<about>(?:    .*\n)*)", flags=re.M)

@@ -47,8 +47,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from vibroimpact.records import read_given_dataset, write_record
-from vibroimpact.units import UnitError, si_factor
+from vibroimpact.io.records import read_given_dataset, write_record
+from vibroimpact.io.units import UnitError, si_factor
 
 from .contract import NEEDED, OPTIONAL, SERIES, contract_problems
 from .force_kinds import BASE, FORCE, load_unit, unit_kinds

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from vibroimpact.provenance import config_digest
+from vibroimpact.io.provenance import config_digest
 
 from .schema import Config
 

@@ -9,10 +9,10 @@ from functools import cached_property
 import numpy as np
 
 from vibroimpact.config.problems import ConfigError
+from vibroimpact.diagnosis.run_cost import count_simulated
 from vibroimpact.integration.batch import Schedule
 from vibroimpact.integration.held_run import HeldLane, hold
 from vibroimpact.reduction.modal_model import ModalModel
-from vibroimpact.run_cost import count_simulated
 
 from .constants import FORGET_S, INDEPENDENT
 from .explanations import Point, Structure

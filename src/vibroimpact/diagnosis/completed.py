@@ -11,7 +11,7 @@ from vibroimpact.effects.effect import Values
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.decimation import RATIO
 from vibroimpact.integration.step_stability import require_stable_step
-from vibroimpact.records import plain_values
+from vibroimpact.io.records import plain_values
 
 from .constants import GAIN_SD, VALUE_SD
 from .coordinates import Coordinate

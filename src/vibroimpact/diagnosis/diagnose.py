@@ -13,10 +13,10 @@ import xarray as xr
 from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.config.measured_structure import MeasuredStructure
 from vibroimpact.config.schema import Config
+from vibroimpact.diagnosis.run_cost import SIMULATED
 from vibroimpact.effects.registry import EFFECTS
-from vibroimpact.records import write_record, write_table, write_text
-from vibroimpact.run_cost import SIMULATED
-from vibroimpact.stopwatch import Stopwatch
+from vibroimpact.io.records import write_record, write_table, write_text
+from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.verdict.content import (
     WITH_AMBIGUITY_SET,
     WITH_EFFECTS,

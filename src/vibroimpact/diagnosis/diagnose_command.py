@@ -43,8 +43,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Run the command. Return 1 where there is no verdict."""
     from vibroimpact.config.problems import ConfigError
-    from vibroimpact.provenance import verdict_origin
-    from vibroimpact.records import RecordError
+    from vibroimpact.io.provenance import verdict_origin
+    from vibroimpact.io.records import RecordError
 
     from .diagnose import run_diagnosis, write_diagnosis
     from .identified.structure_file import model_of, values_of

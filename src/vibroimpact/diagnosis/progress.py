@@ -9,8 +9,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TextIO
 
-from vibroimpact.records import write_text
-from vibroimpact.run_cost import SIMULATED
+from vibroimpact.diagnosis.run_cost import SIMULATED
+from vibroimpact.io.records import write_text
 
 # Runs for each effect that is looked for at once, over those before the first line of progress:
 # 4.0 to 5.8 on campaigns of the default tube.

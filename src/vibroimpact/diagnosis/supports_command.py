@@ -59,7 +59,7 @@ def run(options: argparse.Namespace) -> int:
     from vibroimpact.campaign.file import CampaignError
     from vibroimpact.config.problems import ConfigError
     from vibroimpact.config.reading import load_config
-    from vibroimpact.records import RecordError, write_table
+    from vibroimpact.io.records import RecordError, write_table
 
     from .supports import SupportValue, virtual_supports
 

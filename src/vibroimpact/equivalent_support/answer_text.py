@@ -7,7 +7,7 @@ import io
 from dataclasses import asdict
 from typing import Any
 
-from vibroimpact.records import plain_values
+from vibroimpact.io.records import plain_values
 from vibroimpact.study.method_agreement import COMPARED
 from vibroimpact.study.reasons import NOT_MOVED, UNITS
 

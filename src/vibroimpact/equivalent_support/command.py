@@ -99,7 +99,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Run the command. Return 1 where there is no answer, or a k or c has no value and no bound."""
     from vibroimpact.config.problems import ConfigError
-    from vibroimpact.records import RecordError
+    from vibroimpact.io.records import RecordError
 
     from .answer import EquivalentError
 
@@ -165,7 +165,7 @@ def _write_export(
     options: argparse.Namespace, answer: Answer, model: ModalModel
 ) -> tuple[str, ...]:
     """Write the export. Return what was left out of it. Raises EquivalentError."""
-    from vibroimpact.records import write_text
+    from vibroimpact.io.records import write_text
 
     from .answer import EquivalentError
     from .export_formats.registry import springs_text

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.records import plain_values, read_text
+from vibroimpact.io.records import plain_values, read_text
 
 from .displacement_law import DisplacementLaw
 

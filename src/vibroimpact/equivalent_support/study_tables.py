@@ -10,7 +10,7 @@ import numpy as np
 from vibroimpact.config.problems import ConfigError
 from vibroimpact.config.stage_keys import answer_digest
 from vibroimpact.config.yaml_file import read_yaml
-from vibroimpact.records import RecordError, read_table
+from vibroimpact.io.records import RecordError, read_table
 from vibroimpact.study.equivalent_table import DIGEST_COLUMN, equivalent_rows
 from vibroimpact.study.run_files import CONFIG_FILE
 

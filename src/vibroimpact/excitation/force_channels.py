@@ -8,8 +8,8 @@ from typing import TypeVar
 import numpy as np
 
 from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.excitation.random_streams import random_generator
 from vibroimpact.geometry.sections import outer_width
-from vibroimpact.random_streams import random_generator
 
 from .force_stream import SpectralForce
 from .line_force_spectrum import line_force_psd

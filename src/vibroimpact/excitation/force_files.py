@@ -5,12 +5,12 @@ from pathlib import Path
 
 import numpy as np
 
-from vibroimpact.foreign_arrays import ForeignFileError, refused_if_damaged
-from vibroimpact.signal_files.csv_table import read_csv
-from vibroimpact.signal_files.matlab import read_matlab
-from vibroimpact.signal_files.netcdf import read_netcdf
-from vibroimpact.signal_files.signals import ImportProblem, Signal
-from vibroimpact.units import UnitError, si_factor
+from vibroimpact.io.foreign_arrays import ForeignFileError, refused_if_damaged
+from vibroimpact.io.signal_files.csv_table import read_csv
+from vibroimpact.io.signal_files.matlab import read_matlab
+from vibroimpact.io.signal_files.netcdf import read_netcdf
+from vibroimpact.io.signal_files.signals import ImportProblem, Signal
+from vibroimpact.io.units import UnitError, si_factor
 
 READERS = {".nc": read_netcdf, ".csv": read_csv, ".mat": read_matlab}
 LARGEST_N = 1e20

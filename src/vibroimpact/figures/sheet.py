@@ -19,9 +19,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
-from vibroimpact.display_units import display_unit
-from vibroimpact.records import write_cells, write_text
-from vibroimpact.whole_file import whole_file
+from vibroimpact.io.display_units import display_unit
+from vibroimpact.io.records import write_cells, write_text
+from vibroimpact.io.whole_file import whole_file
 
 from .style import label_of, shown, tidy_log_axes
 

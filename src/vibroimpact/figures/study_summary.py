@@ -9,12 +9,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_pdf import PdfPages
 
+from vibroimpact.io.whole_file import whole_file
 from vibroimpact.reports.equivalent_answer import Answer
 from vibroimpact.reports.study_content import MOST_LOADS, StudyContent
 from vibroimpact.reports.study_statistics import SEVERAL
 from vibroimpact.reports.study_tables import Table, answer_table, spread_evenly
 from vibroimpact.reports.study_words import load_label, place_in_words
-from vibroimpact.whole_file import whole_file
 
 from .printed_page import LEFT_PT, PrintedPage, height_pt
 from .style import GAP_COLOURS, GAP_MARKERS, label_of, shown, tidy_log_axis

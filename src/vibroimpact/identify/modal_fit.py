@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from vibroimpact.least_squares import minimise
+from vibroimpact.identify.least_squares import minimise
 from vibroimpact.reduction.modal_structure import IdentifiedModes
 from vibroimpact.spectra.periodic_lines import LevelLines
 

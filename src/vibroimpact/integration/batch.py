@@ -5,8 +5,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.reduction.modal_model import ModalModel
-from vibroimpact.stopwatch import Stopwatch
 
 from .contact_convergence import LARGEST_DECAY, IntegrationError, checked_contraction
 from .kernel_layout import ModalLayout

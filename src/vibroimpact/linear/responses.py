@@ -12,8 +12,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from vibroimpact.io.units import TIME_DERIVATIVES
 from vibroimpact.reduction.modal_model import ModalModel
-from vibroimpact.units import TIME_DERIVATIVES
 
 from .modes import contact_matrix
 

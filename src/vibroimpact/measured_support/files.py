@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.records import write_record, write_table
+from vibroimpact.io.records import write_record, write_table
 from vibroimpact.reduction.model_file import write_model
 
 from .equivalent_of import LOAD, RESPONSE, MeasuredSupports, Rows

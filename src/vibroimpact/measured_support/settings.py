@@ -10,11 +10,11 @@ from vibroimpact.config.excitation import BandLimited
 from vibroimpact.config.schema import Broadband, Identification, Lscf
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.identify.peak import find_peak
+from vibroimpact.io.units import TIME_DERIVATIVES
 from vibroimpact.linear.modes import driven_block, first_mode
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.spectra.welch import driven_axis, segment_spectra
 from vibroimpact.study.cases import Case
-from vibroimpact.units import TIME_DERIVATIVES
 
 from .forces import KnownForce
 from .sensors import direction_of, point_of

@@ -7,10 +7,10 @@ from vibroimpact.campaign.base_motion import integrated
 from vibroimpact.campaign.signals import CampaignSignals
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.identify.broadband import UNKNOWN
+from vibroimpact.io.units import TIME_DERIVATIVES
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.study.case_spectra import case_spectra
 from vibroimpact.study.cases import Case
-from vibroimpact.units import TIME_DERIVATIVES
 
 from .forces import KnownForce, relative_psd
 from .settings import lowest_read_Hz

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vibroimpact.contact.laws import LocalLaws
-from vibroimpact.units import TIME_DERIVATIVES
+from vibroimpact.io.units import TIME_DERIVATIVES
 
 from .modal_model import ModalModel
 

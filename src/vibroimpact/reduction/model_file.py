@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.contact.laws import ContactLaws, LocalLaws
-from vibroimpact.records import read_record, write_record
+from vibroimpact.io.records import read_record, write_record
 
 from .modal_model import ModalModel
 from .model_variables import model_attributes

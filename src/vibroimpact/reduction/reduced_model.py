@@ -19,7 +19,7 @@ from vibroimpact.excitation.force_vectors import (
 )
 from vibroimpact.excitation.turbulence import drive_shapes
 from vibroimpact.geometry.centreline import SAME_PLACE_M
-from vibroimpact.memo import Memo, content_key
+from vibroimpact.io.memo import Memo, content_key
 from vibroimpact.structure.definiteness import require_definite
 from vibroimpact.structure.point_structure import PointStructure, build_point_structure
 from vibroimpact.structure.rigid_motions import free_rigid_motions

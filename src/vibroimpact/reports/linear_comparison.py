@@ -15,8 +15,8 @@ from vibroimpact.campaign.signals import Transfer, campaign_signals, transfer_or
 from vibroimpact.config.schema import Config
 from vibroimpact.diagnosis.measurement.attached_model import attach
 from vibroimpact.identify.stable_poles import stable_poles
+from vibroimpact.io.units import SI_OF_KIND, TIME_DERIVATIVES
 from vibroimpact.reduction.modal_model import ModalModel
-from vibroimpact.units import SI_OF_KIND, TIME_DERIVATIVES
 
 MANY = 1000  # averages of a frequency response whose number is not stated
 NEGLIGIBLE = 0.01  # of the response of every channel: a pole with less is no mode

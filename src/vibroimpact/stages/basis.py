@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.provenance import file_attributes
-from vibroimpact.records import write_table
+from vibroimpact.io.provenance import file_attributes
+from vibroimpact.io.records import write_table
 from vibroimpact.reduction.basis_accuracy import basis_frequency_errors, require_complete
 from vibroimpact.reduction.model_accuracy import (
     COLUMNS,

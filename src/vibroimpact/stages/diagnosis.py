@@ -8,7 +8,7 @@ from typing import Any
 from vibroimpact.diagnosis.diagnose import run_diagnosis, write_diagnosis
 from vibroimpact.diagnosis.identified.structure_file import model_from
 from vibroimpact.diagnosis.progress import SoFar
-from vibroimpact.provenance import verdict_origin
+from vibroimpact.io.provenance import verdict_origin
 
 
 def make(given: Any, made: Any, params: Any, threads: int) -> None:

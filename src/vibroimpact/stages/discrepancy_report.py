@@ -8,7 +8,7 @@ from typing import Any
 from vibroimpact.config.schema import Config
 from vibroimpact.diagnosis.identified.structure_file import model_from
 from vibroimpact.figures.diagnosis.sheets import diagnosis_figures
-from vibroimpact.records import read_record, write_text
+from vibroimpact.io.records import read_record, write_text
 from vibroimpact.reports.discrepancy_page import FREE_RUNS, NOISE, discrepancy_page
 from vibroimpact.verdict.content import read_verdict
 
@@ -20,14 +20,14 @@ def make(given: Any, made: Any, params: Any) -> None:
     params: model in plain values, name of the campaign.
     """
     model = model_from(params.model)
-    with_model = isinstance(model, Config)
+    config = model if isinstance(model, Config) else None
     folder = Path(made.page).parent
     verdict = read_verdict(given.verdict)
     sheets = diagnosis_figures(
         read_record(given.evidence),
         read_record(given.spectra),
         verdict,
-        model if with_model else None,
+        config,
     )
     for sheet in sheets:
         sheet.save(folder / "figures")
@@ -37,7 +37,7 @@ def make(given: Any, made: Any, params: Any) -> None:
             params.name,
             verdict,
             shown,
-            FREE_RUNS if with_model else NOISE,
+            NOISE if config is None else FREE_RUNS,
             str(folder / "model_updated.yaml"),
         ),
         made.page,

@@ -10,10 +10,10 @@ from vibroimpact.config.reading import check_config
 from vibroimpact.figures.interactive.measured_plots import measured_plots
 from vibroimpact.figures.interactive.pictures import pictures
 from vibroimpact.figures.study.measured import measured_figures, study_beside
+from vibroimpact.io.provenance import file_attributes
+from vibroimpact.io.records import write_text
 from vibroimpact.measured_support.equivalent_of import equivalent_of
 from vibroimpact.measured_support.files import write_measured
-from vibroimpact.provenance import file_attributes
-from vibroimpact.records import write_text
 from vibroimpact.reports.captions import read_caption
 from vibroimpact.reports.measured_content import measured_content
 from vibroimpact.reports.study_page import study_page

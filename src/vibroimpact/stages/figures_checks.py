@@ -7,7 +7,7 @@ from typing import Any
 
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.figures.study import checks, equivalent
-from vibroimpact.records import read_table
+from vibroimpact.io.records import read_table
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.study.case_files import read_case
 

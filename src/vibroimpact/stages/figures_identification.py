@@ -8,7 +8,7 @@ from typing import Any
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.figures.study import broadband, poles, shapes
 from vibroimpact.figures.study.cases_of_gap import cases_of_gap, shown_gap
-from vibroimpact.records import read_table
+from vibroimpact.io.records import read_table
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.study.case_files import read_case
 

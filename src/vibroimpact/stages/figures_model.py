@@ -7,7 +7,7 @@ from typing import Any
 
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.figures.study import basis, contact, tube
-from vibroimpact.records import read_table
+from vibroimpact.io.records import read_table
 from vibroimpact.structure.tube import build_structure
 
 

@@ -7,10 +7,10 @@ from typing import Any
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.identify.estimate import table_rows
 from vibroimpact.identify.identify_case import RECORD_READ, SPECTRA_READ, identify_case
-from vibroimpact.provenance import file_attributes
-from vibroimpact.records import write_record, write_table
+from vibroimpact.io.provenance import file_attributes
+from vibroimpact.io.records import write_record, write_table
+from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.reduction.model_file import read_model
-from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.study.case_files import read_case
 
 

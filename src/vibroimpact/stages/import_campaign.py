@@ -10,7 +10,7 @@ from vibroimpact.campaign.file import write_campaign
 from vibroimpact.campaign.importing.assemble import import_folder
 from vibroimpact.campaign.importing.report import write_report
 from vibroimpact.figures.discrepancy.quicklook import quicklook
-from vibroimpact.signal_files.signals import ImportProblem
+from vibroimpact.io.signal_files.signals import ImportProblem
 
 
 def make(given: Any, made: Any, params: Any) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 from vibroimpact.campaign.checks.file_checks import COLUMNS, check_file
 from vibroimpact.campaign.importing.report import checks_text
 from vibroimpact.figures.discrepancy.quicklook import quicklook
-from vibroimpact.records import write_table, write_text
+from vibroimpact.io.records import write_table, write_text
 
 
 def make(given: Any, made: Any, params: Any) -> None:
@@ -18,7 +18,7 @@ def make(given: Any, made: Any, params: Any) -> None:
     given: campaign. made: checks, text, figure. Raises SystemExit with the problems of a campaign
     that can not be read.
     """
-    campaign, checks = check_file(given.campaign, unmade=True)
+    campaign, checks = check_file(given.campaign)
     if campaign is None:
         sys.exit(checks_text(checks))
     print(checks_text(checks))

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.provenance import file_attributes
+from vibroimpact.io.provenance import file_attributes
+from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.reduction.model_file import read_model
-from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.study.cases import cases_of_files
 from vibroimpact.study.series_writer import series_writer, write_record_parts
 from vibroimpact.study.simulation import simulate_cases

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.provenance import file_attributes
-from vibroimpact.records import write_record
-from vibroimpact.stopwatch import Stopwatch
+from vibroimpact.io.provenance import file_attributes
+from vibroimpact.io.records import write_record
+from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.study.case_files import read_case
 from vibroimpact.study.case_spectra import case_spectra
 

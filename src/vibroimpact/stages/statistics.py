@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from vibroimpact.records import write_table
+from vibroimpact.io.records import write_table
 from vibroimpact.study.case_files import read_case
 from vibroimpact.study.statistics_table import statistics_rows
 

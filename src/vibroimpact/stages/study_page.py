@@ -10,7 +10,7 @@ from vibroimpact.figures.interactive.pictures import pictures
 from vibroimpact.figures.interactive.study_plots import StudyFiles, direction_of, study_plots
 from vibroimpact.figures.study.checks import limits
 from vibroimpact.figures.study_summary import study_summary
-from vibroimpact.records import read_attributes, read_table, write_text
+from vibroimpact.io.records import read_attributes, read_table, write_text
 from vibroimpact.reduction.model_accuracy import mesh_warnings
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.reports.captions import read_caption

@@ -6,9 +6,9 @@ from typing import Any
 
 from vibroimpact.campaign.file import write_campaign
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.provenance import file_attributes
+from vibroimpact.io.provenance import file_attributes
+from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.reduction.model_file import read_model
-from vibroimpact.stopwatch import Stopwatch
 from vibroimpact.study.synthetic_campaign import synthetic_campaign
 
 

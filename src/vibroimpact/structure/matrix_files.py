@@ -6,13 +6,13 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
-from vibroimpact.foreign_arrays import (
+from vibroimpact.io.foreign_arrays import (
     ForeignFileError,
     load_npz,
     refused_if_damaged,
     require_size,
 )
-from vibroimpact.matlab_files import load_matlab
+from vibroimpact.io.matlab_files import load_matlab
 
 from .matrix_market import read_matrix_market
 

@@ -13,7 +13,7 @@ from typing import TextIO
 import numpy as np
 from scipy import sparse
 
-from vibroimpact.foreign_arrays import ForeignFileError
+from vibroimpact.io.foreign_arrays import ForeignFileError
 
 FIELDS = ("real", "double", "integer")
 SYMMETRIES = ("general", "symmetric")

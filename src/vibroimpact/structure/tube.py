@@ -16,7 +16,7 @@ from vibroimpact.geometry.centreline import (
 from vibroimpact.geometry.directions import transverse_directions, unit_vector
 from vibroimpact.geometry.mesh import halved_mesh, mesh_arc_lengths
 from vibroimpact.geometry.sections import ROUND, section_kind
-from vibroimpact.memo import Memo
+from vibroimpact.io.memo import Memo
 
 from .beam_elements import DOF_PER_NODE, Beam, element_matrices, interpolation, section_beam
 from .fluid import FluidStretch, beams_in_fluid, fluid_stretches, transverse_only

@@ -16,8 +16,8 @@ from vibroimpact.config.reading import config_of
 from vibroimpact.config.schema import Config
 from vibroimpact.config.stage_keys import stage_params
 from vibroimpact.identify.estimate import table_rows
-from vibroimpact.memo import Memo
-from vibroimpact.provenance import config_digest
+from vibroimpact.io.memo import Memo
+from vibroimpact.io.provenance import config_digest
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.reduction.reduced_model import build_model
 

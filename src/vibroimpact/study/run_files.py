@@ -11,8 +11,8 @@ from typing import Any
 import yaml
 
 from vibroimpact import __version__
-from vibroimpact.provenance import config_digest, package_digest, versions
-from vibroimpact.records import write_text
+from vibroimpact.io.provenance import config_digest, package_digest, versions
+from vibroimpact.io.records import write_text
 
 CONFIG_FILE, PROVENANCE_FILE = "config.yaml", "provenance.json"
 

@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.integration.batch import Schedule
-from vibroimpact.records import RecordFile, write_record
+from vibroimpact.io.records import RecordFile, write_record
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .cases import Case

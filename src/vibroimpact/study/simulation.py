@@ -11,6 +11,7 @@ import xarray as xr
 
 from vibroimpact.excitation.force_channels import force_channels
 from vibroimpact.excitation.force_stream import ForceStream
+from vibroimpact.excitation.random_streams import random_generator
 from vibroimpact.integration.batch import (
     ENERGY_TERMS,
     BatchResult,
@@ -22,9 +23,8 @@ from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.integration.preload import seated
 from vibroimpact.integration.run_statistics import statistics
-from vibroimpact.random_streams import random_generator
+from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.reduction.modal_model import ModalModel
-from vibroimpact.stopwatch import Stopwatch
 
 from .cases import Case
 from .every_step_records import trace_cases

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.integration.batch import Schedule
-from vibroimpact.records import RecordFile
+from vibroimpact.io.records import RecordFile
+from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.reduction.modal_model import ModalModel
-from vibroimpact.stopwatch import Stopwatch
 
 from .case_spectra import CaseSpectra
 from .cases import Case

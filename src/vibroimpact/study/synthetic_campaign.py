@@ -12,9 +12,9 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.campaign.file import SYNTHETIC, Channel, Level, campaign_dataset
-from vibroimpact.random_streams import random_generator
+from vibroimpact.excitation.random_streams import random_generator
+from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.reduction.modal_model import ModalModel
-from vibroimpact.stopwatch import Stopwatch
 
 from .cases import Case
 from .simulation import simulate_cases

@@ -6,8 +6,8 @@ It is summed from the benchmark files of the jobs and the CPU seconds in their l
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from vibroimpact.records import read_text
-from vibroimpact.stopwatch import seconds_in
+from vibroimpact.io.records import read_text
+from vibroimpact.io.stopwatch import seconds_in
 
 # The work a study is made for; everything else should take less than a third of the time.
 METHOD = ("kernel", "spectra", "identification")

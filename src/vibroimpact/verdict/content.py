@@ -1,7 +1,7 @@
 """verdict.json: which effects a model lacks, and the evidence for it; its one writer and reader.
 
 `verdict.schema.json` beside this file is the JSON schema of `Verdict` for readers in other
-languages; tests/unit/test_verdict.py compares it.
+languages; tests/verdict/test_verdict.py compares it.
 """
 
 import json
@@ -22,7 +22,7 @@ from pydantic import (
 )
 
 from vibroimpact.effects.registry import effects_in_words
-from vibroimpact.records import RecordError, plain_values, read_text, write_text
+from vibroimpact.io.records import RecordError, plain_values, read_text, write_text
 
 Conclusion = Literal["none", "named", "ambiguous", "partly_explained", "unknown", "not_testable"]
 CONCLUSIONS: tuple[Conclusion, ...] = get_args(Conclusion)

@@ -44,7 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Run the command. Return 1 where there is no answer."""
     from vibroimpact.config.problems import ConfigError
-    from vibroimpact.records import RecordError, write_table
+    from vibroimpact.io.records import RecordError, write_table
 
     from .life import NoWear, Service, wear_life
 

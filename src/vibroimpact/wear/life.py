@@ -13,7 +13,7 @@ from vibroimpact.config.reading import load_config
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.config.supports import Support
 from vibroimpact.geometry.sections import section_kind
-from vibroimpact.records import read_record
+from vibroimpact.io.records import read_record
 
 from .depth import YEAR_S, depth_of, volume_of
 

@@ -30,7 +30,7 @@ from vibroimpact.campaign.signals import (
     common_period,
     transfer_or_reason,
 )
-from vibroimpact.records import RecordError
+from vibroimpact.io.records import RecordError
 
 from .between_records import contradictions, copies, spike
 from .linear_record import (

@@ -14,7 +14,7 @@ import numpy as np
 from vibroimpact.campaign.file import SAME_POINT_M
 from vibroimpact.campaign.signals import CampaignSignals, Transfer
 from vibroimpact.identify.lscf import NormalEquations
-from vibroimpact.units import TIME_DERIVATIVES
+from vibroimpact.io.units import TIME_DERIVATIVES
 
 ALIGNED, ACROSS = 0.7, 0.3  # |cosine| with the force
 COHERENT, INCOHERENT, NO_CAUSE = 0.8, 0.35, 0.1

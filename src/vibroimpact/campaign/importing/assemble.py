@@ -14,8 +14,8 @@ from vibroimpact.campaign.file import (
     load_of,
     with_no_force,
 )
-from vibroimpact.signal_files.signals import ImportProblem
-from vibroimpact.units import si_factor, si_unit
+from vibroimpact.io.signal_files.signals import ImportProblem
+from vibroimpact.io.units import si_factor, si_unit
 
 from .cuts import Cut, cut_records
 from .raw_files import raw_files, read_signals

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from vibroimpact.signal_files.signals import EVEN_WITHIN, ImportProblem, Signal
-from vibroimpact.units import si_factor
+from vibroimpact.io.signal_files.signals import EVEN_WITHIN, ImportProblem, Signal
+from vibroimpact.io.units import si_factor
 
 from .sensors import Measured, ResolvedSensor
 from .sidecar import NAME, Record, record_names

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from vibroimpact.records import write_text
-from vibroimpact.signal_files.signals import ImportProblem, Signal
+from vibroimpact.io.records import write_text
+from vibroimpact.io.signal_files.signals import ImportProblem, Signal
 
 from .assemble import import_folder
 from .raw_files import raw_files, read_signals

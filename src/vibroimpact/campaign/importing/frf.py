@@ -9,8 +9,8 @@ import numpy as np
 
 from vibroimpact.campaign.file import Channel
 from vibroimpact.campaign.force_kinds import FORCE
-from vibroimpact.signal_files.signals import ImportProblem
-from vibroimpact.units import TIME_DERIVATIVES, UnitError, si_factor
+from vibroimpact.io.signal_files.signals import ImportProblem
+from vibroimpact.io.units import TIME_DERIVATIVES, UnitError, si_factor
 
 from .uff import FORCE_TYPES, KIND_OF_TYPE, node_name, nodes_of, read_datasets, unit_of
 

@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from pathlib import Path
 
-from vibroimpact.records import MOST_READ
-from vibroimpact.signal_files.csv_table import read_csv
-from vibroimpact.signal_files.matlab import read_matlab
-from vibroimpact.signal_files.netcdf import read_netcdf
-from vibroimpact.signal_files.signals import UNREAD, ImportProblem, Signal
+from vibroimpact.io.records import MOST_READ
+from vibroimpact.io.signal_files.csv_table import read_csv
+from vibroimpact.io.signal_files.matlab import read_matlab
+from vibroimpact.io.signal_files.netcdf import read_netcdf
+from vibroimpact.io.signal_files.signals import UNREAD, ImportProblem, Signal
 
 from .sidecar import NAME, read_sidecar
 from .uff import read_uff

@@ -9,7 +9,7 @@ import xarray as xr
 
 from vibroimpact.campaign.checks.file_checks import COLUMNS, check_campaign
 from vibroimpact.campaign.file import with_no_force
-from vibroimpact.records import write_table, write_text
+from vibroimpact.io.records import write_table, write_text
 
 SHOWN = {
     "sensor": "sensor",

@@ -10,8 +10,8 @@ import numpy as np
 
 from vibroimpact.campaign.file import Channel
 from vibroimpact.campaign.force_kinds import BASE, FORCE
-from vibroimpact.signal_files.signals import Signal
-from vibroimpact.units import UnitError, si_factor
+from vibroimpact.io.signal_files.signals import Signal
+from vibroimpact.io.units import UnitError, si_factor
 
 from .raw_files import absence
 from .sidecar import DIRECTIONS, NAME, Record, Sensor, Sidecar

@@ -25,7 +25,7 @@ from vibroimpact.config.quantities import (
     Whole,
 )
 from vibroimpact.config.yaml_file import read_yaml
-from vibroimpact.signal_files.signals import ImportProblem
+from vibroimpact.io.signal_files.signals import ImportProblem
 
 NAME = "campaign.yaml"
 Direction = Literal["x", "y", "z", "+x", "+y", "+z", "-x", "-y", "-z"]

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from vibroimpact.signal_files.signals import ImportProblem, Signal, even_samples, whole_rate
-from vibroimpact.units import UnitError, si_factor
+from vibroimpact.io.signal_files.signals import ImportProblem, Signal, even_samples, whole_rate
+from vibroimpact.io.units import UnitError, si_factor
 
 TIME_RESPONSE, SHOCK = 1, 0  # function types that may hold time records
 KIND_OF_TYPE = {

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from vibroimpact.identify.least_squares import Minimum, minimise_by_differences
 from vibroimpact.identify.modal_fit import Ridge, pack, unpack
-from vibroimpact.least_squares import Minimum, minimise_by_differences
 
 from ..completed import NINETY_SD
 from ..constants import INDEPENDENT

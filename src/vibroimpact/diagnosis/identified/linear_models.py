@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.identify.least_squares import minimise_by_differences
 from vibroimpact.identify.modal_fit import Ridge, identify_modes, pack, refine_modes, unpack
-from vibroimpact.least_squares import minimise_by_differences
 from vibroimpact.reduction.modal_structure import IdentifiedModes
 from vibroimpact.spectra.periodic_lines import LevelLines
 

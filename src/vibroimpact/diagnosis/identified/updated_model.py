@@ -12,7 +12,7 @@ import numpy as np
 import yaml
 
 from vibroimpact.contact.local_elements import COLUMNS
-from vibroimpact.records import plain_values
+from vibroimpact.io.records import plain_values
 
 from .trial import Trial
 

@@ -19,10 +19,10 @@ from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.geometry.centreline import build_centreline
 from vibroimpact.geometry.directions import unit_vector
 from vibroimpact.geometry.sections import outer_width
+from vibroimpact.io.units import UnitError, si_factor
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.structure.point_structure import build_point_structure
 from vibroimpact.structure.tube import build_structure
-from vibroimpact.units import UnitError, si_factor
 
 from .named_places import LEAST_COSINE, no_motion, point_at
 from .sensed_motion import CONTACT_FORCE, SENSED, STRAIN, across, support_at

@@ -10,8 +10,8 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
+from vibroimpact.io.units import TIME_DERIVATIVES
 from vibroimpact.reduction.modal_model import ModalModel
-from vibroimpact.units import TIME_DERIVATIVES
 
 STRAIN = "strain"
 CONTACT_FORCE = "contact_force"

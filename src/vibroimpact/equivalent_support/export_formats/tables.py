@@ -7,7 +7,7 @@ import io
 import json
 from typing import Any
 
-from vibroimpact.records import plain_values
+from vibroimpact.io.records import plain_values
 
 from ..springs import SpringSet
 from .unit_system import UnitSystem

@@ -20,8 +20,8 @@ from vibroimpact.figures.style import (
     SKY,
     ordered_colours,
 )
+from vibroimpact.io.units import UnitError, si_unit
 from vibroimpact.spectra.welch import psd_statistics, segment_spectra
-from vibroimpact.units import UnitError, si_unit
 
 MOST_PANELS = 12
 ACROSS = 3

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from vibroimpact.records import read_text
+from vibroimpact.io.records import read_text
 from vibroimpact.reports.captions import Caption
 from vibroimpact.reports.study_page import Picture
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from vibroimpact.equivalent_support.homogeneity import effects_with_a_scale
-from vibroimpact.records import read_table
+from vibroimpact.io.records import read_table
 from vibroimpact.spectra.welch import driven_axis
 from vibroimpact.study.case_files import read_case
 from vibroimpact.study.cases import case_from_id

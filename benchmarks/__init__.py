@@ -1,3 +1,0 @@
-"""What the project costs beside what a user would otherwise pick: `make benchmark`, or `python -m
-benchmarks --help`.
-"""

@@ -1,0 +1,16 @@
+"""The table that tells when the equivalent linear model may be used, and its figures."""
+
+from pathlib import Path
+
+from evidence.validation.figures.prediction import prediction
+from vibroimpact.equivalent_support.linear_prediction import summary_rows
+from vibroimpact.io.job_log import redirect_output
+from vibroimpact.io.records import read_table, write_table
+
+redirect_output(snakemake.log[0])
+rows = [row for path in snakemake.input.tables for row in read_table(path)]
+write_table(rows, snakemake.output.table)
+write_table(summary_rows(rows), snakemake.output.summary)
+for law in ("load / gap", "load / gap, input gain"):
+    prediction(rows, law).save(Path(snakemake.output.figures[0]).parent)
+print(f"{len(rows)} predictions")

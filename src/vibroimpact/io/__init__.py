@@ -1,0 +1,1 @@
+"""Files, units, origin of results: no physics, and no import of the other packages."""

@@ -1,0 +1,33 @@
+"""Signals of MATLAB files, of version 4 to 7.3."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from vibroimpact.io.foreign_arrays import ForeignFileError
+from vibroimpact.io.matlab_files import load_matlab
+from vibroimpact.io.records import MOST_READ, RecordError, is_hdf5, read_hdf5_arrays
+
+from .arrays import Arrays, signals_of_arrays
+from .signals import ImportProblem, Signal
+
+
+def read_matlab(path: str | Path) -> list[Signal]:
+    """Return the Signals of a MAT file: its dense arrays of real numbers.
+
+    Fields of structures are named structure.field. The rate is Fs, or follows from a time vector.
+    Raises ImportProblem.
+    """
+    try:
+        found = read_hdf5_arrays(path) if is_hdf5(path) else load_matlab(path, MOST_READ)
+    except (RecordError, ForeignFileError) as error:
+        raise ImportProblem(str(error)) from error
+    columns = {
+        name: values
+        for name, values in found.items()
+        if isinstance(values, np.ndarray) and values.dtype.kind in "fiu"
+    }
+    left_out = {name: "holds no real numbers" for name in found if name not in columns}
+    return signals_of_arrays(Arrays(path, columns, left_out=left_out))
