@@ -10,7 +10,7 @@ import sys
 import numpy as np
 import pytest
 import xarray as xr
-from tests.tiny_study import ROOT, TinyStudy, tiny_values
+from tests.support.tiny_study import ROOT, TinyStudy, tiny_values
 
 from tests.faults.runs import Runs, bits
 from vibroimpact.io.records import RecordError, RecordFile, write_cells, write_record, write_text

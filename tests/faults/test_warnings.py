@@ -5,7 +5,7 @@ import sys
 
 import pytest
 import yaml
-from tests.tiny_study import ROOT
+from tests.support.tiny_study import ROOT
 
 from tests.faults.runs import Runs
 from vibroimpact_workflow.run_report import warnings_text

@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 import pytest
-from tests.tiny_study import ROOT
+from tests.support.tiny_study import ROOT
 
 # Plans in this process, then prints the names of the modules that it has loaded.
 PLAN = """
