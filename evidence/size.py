@@ -85,7 +85,7 @@ def rows():
     library_lines = lines(library)
     tests = lines((ROOT / "tests").rglob("*.py"))
     singles = [file for file in LIBRARY.glob("*.py") if not file.stem.startswith("__")]
-    packages = [file for file in LIBRARY.glob("*/__init__.py")]
+    packages = list(LIBRARY.glob("*/__init__.py"))
     return [
         ("lines of the library", library_lines, 40_000),
         ("lines of code in it", sum(map(lines_of_code, library)), 27_000),
