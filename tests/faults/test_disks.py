@@ -10,9 +10,9 @@ import sys
 import numpy as np
 import pytest
 import xarray as xr
-from tests.support.tiny_study import ROOT, TinyStudy, tiny_values
 
 from tests.faults.runs import Runs, bits
+from tests.support.tiny_study import ROOT, TinyStudy, tiny_values
 from vibroimpact.io.records import RecordError, RecordFile, write_cells, write_record, write_text
 from vibroimpact.io.whole_file import problem_of, whole_file
 from vibroimpact_workflow.run_lock import take_folder

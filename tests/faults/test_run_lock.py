@@ -8,8 +8,8 @@ import time
 from pathlib import Path
 
 import pytest
-from tests.support.tiny_study import ROOT
 
+from tests.support.tiny_study import ROOT
 from vibroimpact.io.whole_file import HOST, RecordError, process_lives, remove_left_over, whole_file
 from vibroimpact_workflow.run_lock import FolderTaken, require_past, start_text, take_folder
 

@@ -5,9 +5,9 @@ import sys
 
 import pytest
 import yaml
-from tests.support.tiny_study import ROOT
 
 from tests.faults.runs import Runs
+from tests.support.tiny_study import ROOT
 from vibroimpact_workflow.run_report import warnings_text
 
 WARNING = "RuntimeWarning: divide by zero encountered in divide"

@@ -5,6 +5,7 @@ import subprocess
 import sys
 
 import pytest
+
 from tests.support.tiny_study import ROOT
 
 # Plans in this process, then prints the names of the modules that it has loaded.
