@@ -21,8 +21,7 @@ include: "workflow/rules/identify.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/measured.smk"
 include: "workflow/rules/discrepancy.smk"
-include: "workflow/rules/supports_prediction.smk"
-include: "workflow/rules/timing.smk"
+include: "workflow/rules/on_request.smk"
 
 
 if (ROOT / "evidence").is_dir():
