@@ -13,23 +13,15 @@ report: "workflow/report/study.rst"
 
 
 include: "workflow/rules/configuration.smk"
-include: "workflow/rules/resources.smk"
 include: "workflow/rules/asked_campaign.smk"
 include: "workflow/rules/study_files.smk"
-include: "workflow/rules/run_files.smk"
-include: "workflow/rules/scheduling.smk"
-include: "workflow/rules/model.smk"
-include: "workflow/rules/simulate.smk"
+include: "workflow/rules/run.smk"
+include: "workflow/rules/study.smk"
 include: "workflow/rules/identify.smk"
-include: "workflow/rules/campaign.smk"
 include: "workflow/rules/figures.smk"
-include: "workflow/rules/study_page.smk"
-include: "workflow/rules/import.smk"
-include: "workflow/rules/equivalent.smk"
-include: "workflow/rules/supports_prediction.smk"
-include: "workflow/rules/diagnosis.smk"
-include: "workflow/rules/discrepancy_report.smk"
-include: "workflow/rules/timing.smk"
+include: "workflow/rules/measured.smk"
+include: "workflow/rules/discrepancy.smk"
+include: "workflow/rules/on_request.smk"
 
 
 if (ROOT / "evidence").is_dir():

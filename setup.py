@@ -15,6 +15,7 @@ SHARED = (
     "workflow/Snakefile",
     "workflow/rules/*.smk",
     "workflow/scripts/*.py",
+    "workflow/vibroimpact_workflow/*.py",
     "workflow/profiles/*/config.yaml",
     "workflow/report/*",
     "config/**/*",

@@ -23,6 +23,7 @@ RULES = [
     for folder in (ROOT / "workflow", EVIDENCE)
     for file in sorted((folder / "rules").glob("*.smk"))
 ]
+STAGES = [ROOT / "workflow" / "scripts" / file.name for file in (LIBRARY / "stages").glob("[a-z]*")]
 EXAMPLES = sorted((ROOT / "examples").glob("*/*.py"))
 
 # From the lowest package up: a package, or a module beside them, imports only from those above it
@@ -52,6 +53,7 @@ PACKAGES = (
     "measured_support",
     "reports",
     "figures",
+    "stages",
     "stability_command",
     "study_folder",
     "cli",
@@ -279,6 +281,13 @@ def test_errors_are_not_swallowed_and_warnings_not_silenced():
 def test_scripts_define_nothing(script):
     defined = (ast.FunctionDef, ast.ClassDef, ast.Lambda)
     assert [node for node in ast.walk(tree_of(script)) if isinstance(node, defined)] == []
+
+
+@pytest.mark.parametrize("script", STAGES, ids=lambda file: file.stem)
+def test_a_script_calls_one_function_of_the_library(script):
+    first, second, call = tree_of(script).body[1:]
+    assert isinstance(first, ast.ImportFrom) and isinstance(second, ast.ImportFrom)
+    assert ast.unparse(call).startswith(f"run_job({script.stem}.make, snakemake")
 
 
 def rules():

@@ -1,7 +1,6 @@
 """The command line: what is printed, and the exit code."""
 
 import json
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -12,7 +11,7 @@ import yaml
 
 import vibroimpact
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset, write_campaign
-from vibroimpact.cli import main, require_yaml
+from vibroimpact.cli import main
 from vibroimpact.excitation.random_force import band_limited_noise
 
 ROOT = Path(__file__).parents[2]
@@ -196,15 +195,6 @@ def test_help_and_version_answer_without_numpy():
     assert version.stdout == f"vibroimpact {vibroimpact.__version__}\n"
 
 
-def test_a_broken_configfile_ends_snakemake_with_a_sentence(tmp_path):
-    broken = tmp_path / "broken.yaml"
-    broken.write_text("a: [1\nb: 2\n")
-    for arguments in (["-n", "--configfile", str(broken)], [f"--configfiles={broken}", "-j2"]):
-        with pytest.raises(SystemExit, match="broken.yaml: line 2, column 2"):
-            require_yaml(arguments)
-    require_yaml(["-n", "--configfile", str(STUDY)])
-
-
 @pytest.mark.parametrize("value", ["nan", "inf", "-1", "0", "1e30", "abc"])
 @pytest.mark.parametrize("argument", ["--load", "--gap"])
 def test_a_load_or_gap_that_is_no_quantity_is_refused(argument, value, capsys):
@@ -219,19 +209,3 @@ def test_a_load_or_gap_that_is_no_quantity_is_refused(argument, value, capsys):
 def test_a_path_that_is_too_long_is_refused(command, capsys):
     assert main([*command, "a" * 5000]) == 1
     assert "a" * 5000 in capsys.readouterr().err
-
-
-def test_a_home_that_can_not_be_written_gets_a_cache_here(tmp_path, monkeypatch, reliability):
-    (tmp_path / "home").write_text("a file, no folder")
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("HOME", str(tmp_path / "home"))
-    monkeypatch.setenv("XDG_CACHE_HOME", "")
-    require_yaml([])
-    assert os.environ["XDG_CACHE_HOME"] == str(tmp_path / ".snakemake" / "cache")
-    monkeypatch.setenv("HOME", str(tmp_path))
-    monkeypatch.setenv("XDG_CACHE_HOME", "")
-    require_yaml([])
-    assert os.environ["XDG_CACHE_HOME"] == ""
-    reliability.fault(
-        "a HOME that can not be written", "Snakemake keeps its cache in the working folder"
-    )

@@ -2,7 +2,6 @@
 
 import csv
 import re
-import runpy
 import subprocess
 import sys
 
@@ -10,6 +9,7 @@ import pytest
 import yaml
 
 from tests.cluster.conftest import ROOT, command
+from vibroimpact_workflow.resources import memory, minutes
 
 # A job of a cluster has two Snakemake processes beside its script; each was measured to hold
 # 160 MB (proportional set size, Snakemake 9.27.1).
@@ -35,9 +35,8 @@ def test_every_job_states_memory_and_time_by_its_attempt():
 
 
 def test_each_attempt_asks_for_as_much_again():
-    rules = runpy.run_path(str(ROOT / "workflow" / "rules" / "resources.smk"))
-    assert [rules["memory"](1500)({}, attempt) for attempt in (1, 2, 3)] == [1500, 3000, 4500]
-    assert [rules["minutes"](20)({}, attempt) for attempt in (1, 2, 3)] == [20, 40, 60]
+    assert [memory(1500)({}, attempt) for attempt in (1, 2, 3)] == [1500, 3000, 4500]
+    assert [minutes(20)({}, attempt) for attempt in (1, 2, 3)] == [20, 40, 60]
 
 
 @pytest.mark.slow

@@ -15,7 +15,7 @@ from tests.faults.runs import Runs, bits
 from tests.support.tiny_study import ROOT, TinyStudy, tiny_values
 from vibroimpact.io.records import RecordError, RecordFile, write_cells, write_record, write_text
 from vibroimpact.io.whole_file import problem_of, whole_file
-from vibroimpact.study.run_owner import take_folder
+from vibroimpact_workflow.run_lock import take_folder
 
 RECORD = "results/tiny/records/load_20_gap_0.0001_seed_0.nc"
 REDIRECT = "from vibroimpact.io.job_log import redirect_output as to"
@@ -84,8 +84,8 @@ def test_a_read_only_folder_is_named(kind, small_disk, reliability):
     for path in (disk / "file.nc", disk / "new" / "file.nc"):
         with pytest.raises(RecordError, match=rf"{path}: cannot be written: .* is read-only: make"):
             WRITERS[kind](path)
-    with pytest.raises(RecordError, match="mark.json: cannot be written: .* is read-only"):
-        take_folder(disk / "mark.json", ["snakemake"])
+    with pytest.raises(RecordError, match="run.txt: cannot be written: .* is read-only"):
+        take_folder(disk / "run.txt", ["snakemake"])
     reliability.fault("a read-only result folder", "one sentence: file, folder, remedy")
 
 

@@ -8,7 +8,7 @@ import yaml
 
 from tests.faults.runs import Runs
 from tests.support.tiny_study import ROOT
-from vibroimpact.study.run_report import warnings_text
+from vibroimpact_workflow.run_report import warnings_text
 
 WARNING = "RuntimeWarning: divide by zero encountered in divide"
 

@@ -32,9 +32,9 @@ from vibroimpact.study.cases import Case, all_cases
 from vibroimpact.study.equivalent_table import equivalent_rows
 from vibroimpact.study.in_process import reduced_model
 from vibroimpact.study.method_agreement import consistency_rows, summary_rows
-from vibroimpact.study.run_report import success_text
 from vibroimpact.study.simulation import simulate_cases
 from vibroimpact.study.statistics_table import statistics_rows
+from vibroimpact_workflow.run_report import success_text
 
 ROOT = Path(__file__).resolve().parents[2]
 SENSORS = ("apex.y", "bend_45.y", "left_leg.y", "right_leg.y")

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from vibroimpact.study.headline import headline
 from vibroimpact.study.reasons import NOT_MOVED
-from vibroimpact.study.run_report import failure_text, headline, success_text
+from vibroimpact_workflow.run_report import failure_text, success_text
 
 
 def row(gap_m, load_rms_N, k, agreement, group="all", direction="y", reason=""):

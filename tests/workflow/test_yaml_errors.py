@@ -1,10 +1,13 @@
 """What snakemake is given that it can not use: YAML files, and values of --config."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from vibroimpact_workflow.yaml_files import give_cache, require_yaml
 
 ROOT = Path(__file__).parents[2]
 
@@ -91,3 +94,28 @@ def test_a_value_beside_the_study_is_refused(value):
     target, part = REQUESTS[value]
     given = ["--configfile", "config/smoke.yaml", "--config", value]
     assert refusal(*given, target=target).startswith(part)
+
+
+def test_a_broken_configfile_ends_snakemake_with_a_sentence(tmp_path):
+    broken = tmp_path / "broken.yaml"
+    broken.write_text("a: [1\nb: 2\n")
+    for arguments in (["-n", "--configfile", str(broken)], [f"--configfiles={broken}", "-j2"]):
+        with pytest.raises(SystemExit, match="broken.yaml: line 2, column 2"):
+            require_yaml(arguments)
+    require_yaml(["-n", "--configfile", str(ROOT / "config" / "study.yaml")])
+
+
+def test_a_home_that_can_not_be_written_gets_a_cache_here(tmp_path, monkeypatch, reliability):
+    (tmp_path / "home").write_text("a file, no folder")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    monkeypatch.setenv("XDG_CACHE_HOME", "")
+    give_cache()
+    assert os.environ["XDG_CACHE_HOME"] == str(tmp_path / ".snakemake" / "cache")
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("XDG_CACHE_HOME", "")
+    give_cache()
+    assert os.environ["XDG_CACHE_HOME"] == ""
+    reliability.fault(
+        "a HOME that can not be written", "Snakemake keeps its cache in the working folder"
+    )

@@ -1,11 +1,8 @@
 # The campaign or the folder of measurements that --config names: its name, and what its file
-# states, are checked before a job is planned.
+# states, are checked before a job is planned. The library is imported where one is asked for.
 from functools import cache
 
-from vibroimpact.campaign.file import CampaignError, checked_description
 from vibroimpact.config.reserved_names import name_problem
-from vibroimpact.diagnosis.measurement.comparable import channel_rows, comparison_problems
-from vibroimpact.io.records import RecordError
 
 IMPORTED = Path(REQUEST.get("import", "import")).resolve().name
 
@@ -28,6 +25,9 @@ def described(file, force_needed=True):
 
     Exits with a sentence for everything it states that can not be.
     """
+    from vibroimpact.campaign.file import CampaignError, checked_description
+    from vibroimpact.io.whole_file import RecordError
+
     try:
         return checked_description(file, force_needed)
     except (CampaignError, RecordError) as error:
@@ -61,6 +61,8 @@ def measured_campaign(wildcards):
 @cache
 def require_comparable():
     """Exit where a model can not be compared; say which channels are left out of a comparison."""
+    from vibroimpact.diagnosis.measurement.comparable import channel_rows, comparison_problems
+
     file = REQUEST["campaign"]
     problems = comparison_problems(MODEL, described(file))
     if problems:

@@ -36,6 +36,7 @@ sys.executable = PYTHON
 if IN_CHECKOUT:
     sys.path.insert(0, SOURCE)
     os.environ.update(PYTHONPATH=os.path.abspath(SOURCE))
+sys.path.append(str(ROOT / "workflow"))
 os.environ.update(
     OMP_NUM_THREADS="1",
     OPENBLAS_NUM_THREADS="1",
@@ -45,8 +46,7 @@ os.environ.update(
 
 from vibroimpact.config.asked_numbers import asked_number
 from vibroimpact.config.reading import ConfigError, check_config, read_yaml
-from vibroimpact.diagnosis.diagnose_command import EFFORTS
-from vibroimpact.diagnosis.identified.structure_file import model_of, values_of
+from vibroimpact_workflow.resources import memory, minutes
 
 # Values of --config that are not keys of the study.
 REQUEST = {
@@ -87,10 +87,14 @@ def asked_effort():
 
     Exits with a sentence where it is none that there is.
     """
-    value = REQUEST.get("effort", "standard")
-    if value not in EFFORTS:
-        sys.exit(f"effort = '{value}': give one of {', '.join(EFFORTS)}, or leave it out")
-    return value
+    if "effort" not in REQUEST:
+        return "standard"
+    from vibroimpact.diagnosis.diagnose_command import EFFORTS
+
+    if REQUEST["effort"] not in EFFORTS:
+        told = f"give one of {', '.join(EFFORTS)}, or leave it out"
+        sys.exit(f"effort = '{REQUEST['effort']}': {told}")
+    return REQUEST["effort"]
 
 
 LOOKED_AT = Path(REQUEST.get("campaign", "campaign")).stem
@@ -134,20 +138,25 @@ def checked_config():
 
 
 def checked_model():
-    """The model that a campaign is compared with, or what is stated of a structure without one.
+    """The model that a campaign is compared with, or the statement of a structure without one, and
+    its plain values.
 
     It is that of --config model=FILE, or the study's where none is given.
     """
+    if "model" not in REQUEST:
+        return STUDY, STUDY.model_dump(mode="json")
+    from vibroimpact.diagnosis.identified.structure_file import model_of, values_of
+
     try:
-        return model_of(REQUEST["model"]) if "model" in REQUEST else STUDY
+        model = model_of(REQUEST["model"])
     except ConfigError as error:
         sys.exit(str(error))
+    return model, values_of(model)
 
 
 STUDY = checked_config()
 STUDY_FILES = " + ".join(os.path.relpath(file) for file in workflow.configfiles)
-MODEL = checked_model()
-MODEL_VALUES = values_of(MODEL)
+MODEL, MODEL_VALUES = checked_model()
 WITHOUT_MODEL = not isinstance(MODEL, type(STUDY))  # modes come from the campaign itself
 MODEL_FILES = STUDY_FILES if MODEL is STUDY else REQUEST["model"]
 RESULTS = f"results/{STUDY.study}"

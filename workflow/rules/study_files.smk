@@ -6,6 +6,7 @@ from vibroimpact.config.stage_keys import answer_digest, stage_params
 from vibroimpact.io.provenance import library_digest
 from vibroimpact.reports.captions import read_caption
 from vibroimpact.study.cases import all_cases, batches, case_from_id
+from vibroimpact_workflow.model_checks import model_warnings
 
 FIGURES = {
     "model": (
@@ -35,7 +36,6 @@ FIGURES = {
 TABLES = ("equivalent", "consistency", "consistency_summary", "consistency_collapse")
 CAPTIONS = as_input(ROOT / "workflow" / "report")
 
-CHECKED = []  # configurations whose model has been checked
 CASES = [case.id for case in all_cases(STUDY.grid)]
 KEPT = STUDY.record.keep_time_series or STUDY.record.every_step  # time series
 # The cases that a job simulates: of the default study, those of one load. A job of the
@@ -78,24 +78,23 @@ def matrix_files():
     return sorted({file for file in named if file})
 
 
-def after_model_checks(config, source, files):
+@cache
+def check_model_once(source):
+    """Exit with every problem of the model that the files `source` state, or say its warnings."""
+    for text in model_warnings(STUDY if source == STUDY_FILES else MODEL, source):
+        logger.warning(f"{source}: {text}")
+
+
+def after_model_checks(source, files):
     """An input function that gives files, or those that a function of wildcards gives.
 
-    In the main process it first checks the model of a configuration, once, which `source` names.
-    Exits with every problem before a job starts; a dry run sees them as well.
+    The main process, a dry run too, first checks the model that the files `source` state. A job
+    reads the Snakefile as well, and checks nothing.
     """
 
     def checked(wildcards):
-        if workflow.is_main_process and config not in CHECKED:
-            # Imported here: a job reads the Snakefile too, and checks nothing.
-            from vibroimpact.study.model_checks import check_model
-
-            CHECKED.append(config)
-            found = check_model(config)
-            if found.problems:
-                sys.exit("\n".join(f"{source}: {text}" for text in found.problems))
-            for text in found.warnings:
-                logger.warning(f"{source}: {text}")
+        if workflow.is_main_process:
+            check_model_once(source)
         return files(wildcards) if callable(files) else files
 
     return checked

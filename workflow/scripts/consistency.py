@@ -1,40 +1,6 @@
 """Gather the estimates of all cases into the consistency tables."""
 
-from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.io.job_log import redirect_output
-from vibroimpact.io.provenance import file_attributes
-from vibroimpact.io.records import write_record, write_table
-from vibroimpact.io.stopwatch import Stopwatch
-from vibroimpact.linear.support_groups import unreached_supports
-from vibroimpact.reduction.model_file import read_model
-from vibroimpact.study.agreement_dataset import consistency_dataset
-from vibroimpact.study.case_files import read_estimates
-from vibroimpact.study.equivalent_table import DIGEST_COLUMN, EQUIVALENT_COLUMNS, equivalent_rows
-from vibroimpact.study.method_agreement import (
-    COLLAPSE_COLUMNS,
-    collapse_rows,
-    consistency_rows,
-    summary_rows,
-)
+from vibroimpact.io.job_log import run_job
+from vibroimpact.stages import consistency
 
-redirect_output(snakemake.log[0])
-config = StageSettings(snakemake.params.config)
-model = read_model(snakemake.input.model)
-rows = consistency_rows(read_estimates(snakemake.input.tables, model, config.identification.groups))
-summary = summary_rows(rows)
-unreached = unreached_supports(model, config.identification.groups)
-for name, table, columns in (
-    ("table", rows, ()),
-    ("summary", summary, ()),
-    ("collapse", collapse_rows(summary), COLLAPSE_COLUMNS),
-    ("equivalent", equivalent_rows(summary, unreached), EQUIVALENT_COLUMNS),
-):
-    own = {DIGEST_COLUMN: snakemake.params.digest}
-    write_table([row | own for row in table], getattr(snakemake.output, name), (*columns, *own))
-dataset = consistency_dataset(rows, summary)
-write_record(
-    dataset.assign_attrs(file_attributes(snakemake.params.config, snakemake.params.library)),
-    snakemake.output.dataset,
-)
-print(f"{len(rows)} estimates")
-print(Stopwatch().line())
+run_job(consistency.make, snakemake)

@@ -1,59 +1,6 @@
-"""Make the page of a study."""
+"""Write the page of a study."""
 
-from dataclasses import asdict, fields
-from pathlib import Path
+from vibroimpact.io.job_log import run_job
+from vibroimpact.stages import study_page
 
-from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.figures.interactive.pictures import pictures
-from vibroimpact.figures.interactive.study_plots import StudyFiles, direction_of, study_plots
-from vibroimpact.figures.study.checks import limits
-from vibroimpact.io.job_log import redirect_output
-from vibroimpact.io.records import read_attributes, read_table, write_table, write_text
-from vibroimpact.io.stopwatch import Stopwatch
-from vibroimpact.reduction.model_accuracy import mesh_warnings
-from vibroimpact.reduction.model_file import read_model
-from vibroimpact.reports.captions import read_caption
-from vibroimpact.reports.equivalent_answer import answers, unmoved
-from vibroimpact.reports.study_content import StudyContent, provenance
-from vibroimpact.reports.study_page import study_page
-from vibroimpact.reports.study_statistics import study_statistics
-from vibroimpact.study.case_files import read_case
-from vibroimpact.study.run_report import flag_sentences
-from vibroimpact.study.timing import timing_so_far
-from vibroimpact.wear.life import WearRow, wear_rows
-
-redirect_output(snakemake.log[0])
-config, given = StageSettings(snakemake.params.config), snakemake.input
-tables = {Path(path).stem: read_table(path) for path in given.tables}
-summary = tables.get("consistency_summary", [])
-stages = {
-    stage: read_attributes(paths[0])
-    for stage, paths in (
-        ("reduced model", [given.model]),
-        ("simulation", given.records),
-        ("spectra", given.spectra),
-        ("identification", given.curves),
-    )
-    if paths
-}
-worn = wear_rows(config, given.records, config.wear) if config.wear is not None else []
-content = StudyContent(
-    config,
-    answers(summary, tables.get("equivalent"), direction_of(config)),
-    study_statistics(given.records, read_case),
-    limits(config.integration),
-    provenance(snakemake.params.config, stages, timing_so_far(*snakemake.params.jobs)),
-    unmoved(tables.get("equivalent")),
-    [*mesh_warnings(read_table(given.accuracy)), *flag_sentences(tables.get("equivalent", []))],
-    worn,
-)
-model = read_model(given.model)
-files = StudyFiles(model, given.series, given.spectra, given.curves, summary, read_case)
-captions = {caption.name: caption for caption in map(read_caption, given.captions)}
-page = study_page(content, study_plots(content, files), pictures(given.figures, captions))
-write_text(page, snakemake.output.page)
-if config.wear is not None:
-    columns = tuple(field.name for field in fields(WearRow))
-    write_table([asdict(row) for row in worn], snakemake.output.wear[0], columns)
-print(f"{len(page.encode()) / 1e6:.1f} MB")
-print(Stopwatch().line())
+run_job(study_page.make, snakemake)

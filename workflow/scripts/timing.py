@@ -1,16 +1,6 @@
 """Sum the benchmark files and logs of a study into a table and a figure."""
 
-from pathlib import Path
+from vibroimpact.io.job_log import run_job
+from vibroimpact.stages import timing
 
-from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.figures.drawing import save_plots
-from vibroimpact.figures.study.timing import timing
-from vibroimpact.io.job_log import redirect_output
-from vibroimpact.io.records import write_table
-from vibroimpact.study.timing import study_timing
-
-redirect_output(snakemake.log[0])
-rows = study_timing(snakemake.input.benchmarks, snakemake.params.logs)
-write_table(rows, snakemake.output.table)
-plots = timing(StageSettings(snakemake.params.config), rows)
-save_plots(plots, Path(snakemake.output.figures[0]).parent)
+run_job(timing.make, snakemake)

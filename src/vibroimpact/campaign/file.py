@@ -81,6 +81,7 @@ ABOUT = {
     "time": ("s", "time since the start of the record"),
 }
 LARGEST = 1.0e15  # of any unit; larger samples, such as the fill values of netCDF, are none
+SYNTHETIC = "simulated"  # how the source of a campaign without measurements begins
 SAME_POINT_M = 5.0e-3  # largest distance of a channel from the point it stands for
 PARALLEL = 0.99  # least |cosine| between the direction of a channel and the one asked for
 

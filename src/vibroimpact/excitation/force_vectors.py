@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from vibroimpact.config.name_checks import TUBES
 from vibroimpact.config.stage_settings import ConfigPart
@@ -89,6 +88,8 @@ def turned_direction(
     vector = unit_vector(direction)
     if angle_deg == 0.0:
         return vector
+    from scipy.spatial.transform import Rotation  # half a second that other runs save
+
     return Rotation.from_rotvec(np.deg2rad(angle_deg) * np.asarray(axis, float)).apply(vector)
 
 

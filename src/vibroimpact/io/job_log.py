@@ -1,10 +1,24 @@
-"""The log file of a job."""
+"""A job of the workflow, and its log file."""
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
+from typing import Any
 
+from .stopwatch import Stopwatch
 from .whole_file import folder_problem
+
+
+def run_job(stage: Callable[..., Stopwatch | None], job: Any, *more: Any) -> None:
+    """Run a stage as a job; its log ends with the CPU seconds of the job.
+
+    stage: called with the job's input, output and params, and more arguments.
+    job: has the attributes input, output, params and log, of which log[0] is the path.
+    """
+    redirect_output(job.log[0])
+    parts = stage(job.input, job.output, job.params, *more)
+    print((Stopwatch() if parts is None else parts).line())
 
 
 def redirect_output(path: str | Path) -> None:

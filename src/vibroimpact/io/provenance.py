@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import ast
 import hashlib
 import json
 import platform
-from collections.abc import Iterable, Iterator, Mapping
+import re
+from collections.abc import Iterable, Mapping
 from functools import cache, lru_cache
 from importlib import metadata
 from pathlib import Path
@@ -19,6 +19,13 @@ from vibroimpact import __version__
 PACKAGES = ("vibroimpact", "evidence")  # whose files stand for the code of a result
 VERSIONED = ("numpy", "scipy", "numba", "xarray", "netCDF4", "matplotlib", "snakemake")
 DIGEST_LENGTH = 16
+# An import statement at any depth: `import a, b`, or the dots, module and names of `from`. To parse
+# each file takes ten times as long. A line of prose that looks like one lists a file too many.
+IMPORT = re.compile(
+    r"^[ \t]*(?:import[ \t]+([^\n;]+)"
+    r"|from[ \t]+(\.*)([\w.]*)[ \t]+import[ \t]*(\([^)]*\)|[^\n;]+))",
+    flags=re.M,
+)
 
 
 def config_digest(params: Mapping[str, Any]) -> str:
@@ -132,7 +139,7 @@ def imported_files(script: Path | str, *sources: Path | str) -> list[Path]:
     Imports inside functions count, and so does the __init__.py of every package on the way. Nothing
     is executed: imports of names computed at run time are not seen.
 
-    Raises SyntaxError when a file is not Python, FileNotFoundError when the script does not exist.
+    Raises FileNotFoundError when the script does not exist.
     """
     folders = tuple(map(Path, sources))
     found: set[Path] = set()
@@ -163,44 +170,40 @@ def _imports(file: Path, sources: tuple[Path, ...], _changed_at: int) -> frozens
 def _imported_names(file: Path, sources: tuple[Path, ...]) -> set[str]:
     """Return the dotted names inside the packages that a file imports."""
     names: set[str] = set()
-    for node in _statements(ast.parse(file.read_text(encoding="utf-8"), filename=str(file))):
-        if isinstance(node, ast.Import):
-            names.update(alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            above = _package_above(file, sources, node.level)
-            base = ".".join(filter(None, [above, node.module]))
-            names.add(base)
-            names.update(f"{base}.{alias.name}" for alias in node.names)
+    for plain, level, module, listed in IMPORT.findall(file.read_text(encoding="utf-8")):
+        if plain:
+            names.update(_names_in(plain))
+            continue
+        base = ".".join(filter(None, [_package_above(file, sources, len(level)), module]))
+        names.add(base)
+        names.update(f"{base}.{name}" for name in _names_in(listed))
     return {name for name in names if name.split(".")[0] in PACKAGES}
 
 
-def _statements(node: ast.AST) -> Iterator[ast.AST]:
-    """Yield every statement below a node, at any depth. No import stands in an expression, and
-    most of a file is expressions.
-    """
-    for child in ast.iter_child_nodes(node):
-        if isinstance(child, (ast.stmt, ast.excepthandler, ast.match_case)):
-            yield child
-            yield from _statements(child)
+def _names_in(text: str) -> list[str]:
+    """Return the names in the list of an import statement, without their `as` and comments."""
+    parts = re.sub(r"#.*|[()\\]", "", text).split(",")
+    return [words[0] for words in map(str.split, parts) if words]
 
 
 def _package_above(file: Path, sources: tuple[Path, ...], level: int) -> str:
     """Return the dotted package that `level` leading dots mean in a file; '' for none."""
     if level == 0:
         return ""
-    source = next(one for one in sources if file.resolve().is_relative_to(one.resolve()))
-    parts = file.resolve().relative_to(source.resolve()).parts[:-1]
+    source = next(one for one in sources if file.is_relative_to(one))
+    parts = file.relative_to(source).parts[:-1]
     return ".".join(parts[: len(parts) - level + 1])
 
 
-def _files_of(name: str, source: Path) -> list[Path]:
+@cache
+def _files_of(name: str, source: Path) -> tuple[Path, ...]:
     """Return the files that importing a dotted name executes: every __init__.py and the module."""
     files: list[Path] = []
     folder = source
     for part in name.split("."):
         if (folder / f"{part}.py").is_file():
-            return [*files, folder / f"{part}.py"]
+            return (*files, folder / f"{part}.py")
         folder = folder / part
         if (folder / "__init__.py").is_file():
             files.append(folder / "__init__.py")
-    return files
+    return tuple(files)

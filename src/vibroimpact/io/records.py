@@ -18,7 +18,7 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
-from .whole_file import RecordError, whole_file
+from .whole_file import MAKE_AGAIN, RecordError, read_text, whole_file
 
 # The end of a label's name in a file. By the CF conventions (1.11, sections 5 and 6.1) only numbers
 # may carry the name of their dimension, so the names of supports are support_name (support).
@@ -36,8 +36,7 @@ MOST_TIMES_SMALLER, SMALL_BYTES = 100, 10**8
 
 FORMULA = re.compile(r"'*[=+\-@\t\r].")  # how a cell begins that a spreadsheet computes
 
-# What to do with a file that cannot be read: with a result, and with one that a user gave.
-MAKE_AGAIN = "delete it and run again"
+# What to do with a file that a user gave and that cannot be read; with a result, MAKE_AGAIN.
 GIVE_AGAIN = "copy or export it again, or give another file"
 
 
@@ -515,16 +514,6 @@ def write_text(text: str, path: str | Path) -> None:
     """
     with whole_file(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
-
-
-def read_text(path: str | Path) -> str:
-    """Return the text of a file. Raises RecordError when there is no such file, or no text."""
-    try:
-        return Path(path).read_text(encoding="utf-8")
-    except OSError as error:
-        raise RecordError(f"{path}: cannot be read ({error.strerror})") from error
-    except UnicodeDecodeError as error:
-        raise RecordError(f"{path}: is not text in UTF-8 ({error.reason}): {MAKE_AGAIN}") from error
 
 
 def read_json(path: str | Path) -> Any:

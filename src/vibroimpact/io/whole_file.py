@@ -1,4 +1,4 @@
-"""Files that appear complete or not at all, and the sentence where one cannot be written."""
+"""Files that appear complete or not at all, and the sentence if one cannot be written or read."""
 
 from __future__ import annotations
 
@@ -17,11 +17,22 @@ HOST = re.sub(r"[^A-Za-z0-9-]", "-", socket.gethostname())
 TEMPORARY = re.compile(r"\..+\.(?P<host>[A-Za-z0-9-]+)\.(?P<process>\d+)")
 PROBE_BYTES = 2**20
 FULL = (errno.ENOSPC, errno.EDQUOT)
+MAKE_AGAIN = "delete it and run again"  # a result that cannot be read
 READ_ONLY, FORBIDDEN = (errno.EROFS,), (errno.EACCES, errno.EPERM)
 
 
 class RecordError(Exception):
     """A file that cannot be read or written; the message names it."""
+
+
+def read_text(path: str | Path) -> str:
+    """Return the text of a file. Raises RecordError when there is no such file, or no text."""
+    try:
+        return Path(path).read_text(encoding="utf-8")
+    except OSError as error:
+        raise RecordError(f"{path}: cannot be read ({error.strerror})") from error
+    except UnicodeDecodeError as error:
+        raise RecordError(f"{path}: is not text in UTF-8 ({error.reason}): {MAKE_AGAIN}") from error
 
 
 @contextmanager

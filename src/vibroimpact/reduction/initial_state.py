@@ -8,7 +8,6 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.structure.rigid_motions import rigid_motion
@@ -168,6 +167,8 @@ def _spline(structure: Any, key: str, field: ConfigPart) -> np.ndarray:
     ends = tuple(
         (1, np.zeros(3)) if clamped else "not-a-knot" for clamped in _clamped_ends(structure)
     )
+    from scipy.interpolate import CubicSpline  # half a second that others save
+
     spline = CubicSpline(places, values, bc_type=ends)
     tangents = np.array([line.direction(place) for place in structure.node_arc_length])
     turned = np.cross(tangents, spline(structure.node_arc_length, 1))

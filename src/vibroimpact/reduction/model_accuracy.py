@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 from scipy import linalg, sparse
-from scipy.sparse.linalg import eigsh
 
 from vibroimpact.config.excitation import highest_frequency
 from vibroimpact.config.name_checks import TUBES
@@ -166,6 +165,8 @@ def _lowest_Hz(system: System, springs: np.ndarray, scale: float, count: int) ->
     if size <= DENSE_DOFS or count >= size // 2:
         flexibility = linalg.eigh(mass.toarray(), shifted.toarray(), eigvals_only=True)
     else:
+        from scipy.sparse.linalg import eigsh  # half a second that other runs save
+
         start = np.random.default_rng(0).normal(size=size)  # the same in every run
         flexibility = 1.0 / eigsh(
             shifted, k=count, M=mass.tocsc(), sigma=0.0, v0=start, return_eigenvectors=False

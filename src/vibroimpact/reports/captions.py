@@ -11,7 +11,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from vibroimpact.io.records import read_text
+from vibroimpact.io.whole_file import read_text
 
 # In the order in which a reader needs them.
 CATEGORIES = (

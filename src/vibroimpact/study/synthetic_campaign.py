@@ -11,15 +11,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from vibroimpact.campaign.file import Channel, Level, campaign_dataset
+from vibroimpact.campaign.file import SYNTHETIC, Channel, Level, campaign_dataset
 from vibroimpact.excitation.random_streams import random_generator
 from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .cases import Case
 from .simulation import simulate_cases
-
-SYNTHETIC = "simulated"  # how the source of such a campaign begins
 
 
 def synthetic_campaign(

@@ -6,13 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.campaign.file import channel_at, channel_signal
+from vibroimpact.campaign.file import SYNTHETIC, channel_at, channel_signal
 from vibroimpact.figures.plot import Axis, Item, Mark, Panel, Plot, Series
 from vibroimpact.figures.style import BLACK, BLUE, GREEN, RED, gap_label, label_of, shown
 from vibroimpact.geometry.sections import outer_width
 from vibroimpact.linear.responses import response_psd
 from vibroimpact.spectra.welch import psd_statistics, segment_spectra
-from vibroimpact.study.synthetic_campaign import SYNTHETIC
 
 from .linear_limits import contact_stiffness, linear_modes, shown_band
 from .psd_table import driven_sensor

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 TIME_NAMES = ("time", "t", "time_s", "time (s)", "time [s]", "zeit")
 # Files of recorders that are not read, by the end of their name: what they are, and the remedy.
@@ -124,6 +123,8 @@ def even_samples(time: np.ndarray, values: np.ndarray, place: str) -> tuple[np.n
             f"{place}: unevenly sampled, and {where} (samples from 0): interpolate the record to"
             " even steps first"
         )
+    from scipy.interpolate import CubicSpline  # half a second that others save
+
     even = CubicSpline(time, values, axis=-1)(grid)
     return even, rate, f"unevenly sampled: interpolated to {rate:g} Hz"
 

@@ -1,4 +1,7 @@
-# Raw measurements to a campaign file, and a first look at one.
+# Raw measurements to a campaign file, a first look at one, and the equivalent support of a measured
+# tube: `snakemake -j2 equivalent --config equivalent_of=FILE.nc model=config/x.yaml`. No contact is
+# simulated for it. Where results/ holds a study of the model, its curve is drawn behind the points.
+MEASURED_FIGURES = ("figure_13_equivalent_support", "figure_05_overlay", "figure_06_levels")
 
 
 rule import_campaign:
@@ -52,3 +55,41 @@ rule quicklook:
         f"Quick look at {LOOKED_AT}: results/{LOOKED_AT}/quicklook.png"
     script:
         "../scripts/quicklook.py"
+
+
+rule equivalent:
+    """Equivalent k and c of a measured tube: --config equivalent_of=FILE.nc [model=FILE.yaml]."""
+    input:
+        campaign=(
+            measured_campaign
+            if WITHOUT_MODEL
+            else after_model_checks(MODEL_FILES, measured_campaign)
+        ),
+        page=page_files("study_page"),
+        captions=[caption_file(f"measured_{name}") for name in MEASURED_FIGURES],
+    output:
+        tables=[f"results/{MEASURED}/{name}.csv" for name in TABLES[:3]],
+        dataset=f"results/{MEASURED}/consistency.nc",
+        figures=[
+            f"results/{MEASURED}/figures/{name}.{suffix}"
+            for name in MEASURED_FIGURES
+            for suffix in ("png", "pdf", "csv", "txt")
+        ],
+        page=f"results/{MEASURED}/equivalent.html",
+    log:
+        f"results/{MEASURED}/logs/equivalent.log",
+    benchmark:
+        f"results/{MEASURED}/benchmarks/equivalent.tsv"
+    threads: 1
+    resources:
+        mem_mb=memory(3000),
+        runtime=minutes(30),
+    params:
+        library=library("equivalent"),
+        model=MODEL_VALUES,
+        name=MEASURED,
+        study=None if WITHOUT_MODEL else f"results/{MODEL.study}",
+    message:
+        f"Equivalent support of {MEASURED}: results/{MEASURED}/equivalent.html"
+    script:
+        "../scripts/equivalent.py"

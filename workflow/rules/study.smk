@@ -1,3 +1,32 @@
+# Structure -> reduced model -> simulation -> spectra and statistics; a stand-in for the measured
+# campaign of figure 5, where overlay.campaign names no file.
+from vibroimpact.study.cases import nearest_loads
+
+
+rule _basis:
+    input:
+        matrices=after_model_checks(STUDY_FILES, matrix_files()),
+    output:
+        model=f"{RESULTS}/model.nc",
+        quality=reported(f"{RESULTS}/basis_quality.csv", "basis_quality_table"),
+        accuracy=reported(f"{RESULTS}/model_accuracy.csv"),
+    log:
+        f"{RESULTS}/logs/basis.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/basis.tsv"
+    threads: 1
+    resources:
+        mem_mb=memory(1000),
+        runtime=minutes(10),
+    params:
+        library=library("basis"),
+        config=settings("basis"),
+    message:
+        "Reduced model of the structure, and its quality against the full model"
+    script:
+        "../scripts/basis.py"
+
+
 # One job per batch of cases (rules _simulate_from_0.5 and so on): they are integrated side by side,
 # with one file of each kind per case. Where the time series are kept, spectra are made from those
 # files by a job of their own. Otherwise the simulation makes them and writes no series. Without an
@@ -104,3 +133,27 @@ rule _statistics:
         "Contact, wear and stress statistics of every case, as one table"
     script:
         "../scripts/statistics.py"
+
+
+rule _synthetic_campaign:
+    input:
+        model=f"{RESULTS}/model.nc",
+        force=STUDY.excitation.file if STUDY.excitation.kind == "measured" else [],
+    output:
+        campaign=f"{RESULTS}/synthetic_campaign.nc",
+    log:
+        f"{RESULTS}/logs/synthetic_campaign.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/synthetic_campaign.tsv"
+    threads: 1
+    resources:
+        mem_mb=memory(1000),
+        runtime=minutes(20),
+    params:
+        library=library("synthetic_campaign"),
+        config=settings("synthetic_campaign"),
+        loads=nearest_loads(STUDY.grid, STUDY.overlay.load_rms_N),
+    message:
+        "Synthetic campaign to lay over the simulation"
+    script:
+        "../scripts/synthetic_campaign.py"

@@ -1,6 +1,5 @@
 """One run at a time in a folder: the lock of a dead run is nobody's."""
 
-import json
 import os
 import signal
 import subprocess
@@ -12,22 +11,15 @@ import pytest
 
 from tests.support.tiny_study import ROOT
 from vibroimpact.io.whole_file import HOST, RecordError, process_lives, remove_left_over, whole_file
-from vibroimpact.study.run_owner import (
-    BOOT,
-    FolderTaken,
-    Owner,
-    require_past,
-    start_text,
-    take_folder,
-)
+from vibroimpact_workflow.run_lock import FolderTaken, require_past, start_text, take_folder
 
 PROGRAM = """
 import sys
 import time
 from pathlib import Path
-from vibroimpact.study.run_owner import take_folder
+from vibroimpact_workflow.run_lock import take_folder
 killed = take_folder(sys.argv[1], ["/bin/snakemake", "-j1", "all"])
-print("taken" if killed is None else f"after {killed}", flush=True)
+print(f"after {killed}" if killed else "taken", flush=True)
 sys.stdin.read()
 """
 
@@ -40,7 +32,7 @@ def start():
     def begin(mark):
         process = subprocess.Popen(
             [sys.executable, "-c", PROGRAM, str(mark)],
-            env=os.environ | {"PYTHONPATH": str(ROOT / "src")},
+            env=os.environ | {"PYTHONPATH": f"{ROOT / 'src'}:{ROOT / 'workflow'}"},
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
@@ -54,29 +46,20 @@ def start():
         process.communicate()
 
 
-def mark_of(tmp_path, **changes):
-    """The mark of a run that is not alive."""
-    gone = subprocess.Popen([sys.executable, "-c", ""])
-    gone.wait()
-    boot = BOOT.read_text().strip() if BOOT.is_file() else ""
-    owner = {
-        "host": HOST,
-        "boot": boot,
-        "process": gone.pid,
-        "started": "2026-01-01 10:00:00 UTC",
-        "command": "snakemake -j2",
-    }
-    (tmp_path / "mark.json").write_text(json.dumps(owner | changes))
-    return tmp_path / "mark.json"
+def lock_of(tmp_path, host=HOST):
+    """The lock of a run that was killed."""
+    lock = tmp_path / "run.txt"
+    lock.write_text(f"process 12 on {host}, begun 2026-01-01 10:00:00 UTC (snakemake -j2)")
+    return lock
 
 
 def test_second_run_in_a_folder_is_refused_and_names_first(start, tmp_path, reliability):
-    first, told = start(tmp_path / "mark.json")
+    first, told = start(tmp_path / "run.txt")
     assert told == "taken"
     with pytest.raises(FolderTaken, match=rf"process {first.pid} on .*\(snakemake -j1 all\): wait"):
-        take_folder(tmp_path / "mark.json", ["snakemake"])
+        take_folder(tmp_path / "run.txt", ["snakemake"])
     first.communicate(timeout=20)
-    assert start(tmp_path / "mark.json")[1] == "taken"  # it ended itself
+    assert start(tmp_path / "run.txt")[1] == "taken"  # it ended itself
     reliability.fault(
         "two runs started at once in one folder", "the second is refused, names the first"
     )
@@ -84,42 +67,40 @@ def test_second_run_in_a_folder_is_refused_and_names_first(start, tmp_path, reli
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
 def test_a_killed_run_leaves_a_folder_that_can_be_taken(start, tmp_path, number):
-    first, _ = start(tmp_path / "mark.json")
+    first, _ = start(tmp_path / "run.txt")
     first.send_signal(number)
     first.wait(timeout=20)
-    second, told = start(tmp_path / "mark.json")
+    second, told = start(tmp_path / "run.txt")
     assert f"after process {first.pid} on {HOST}" in told
     second.communicate(timeout=20)
-    assert start(tmp_path / "mark.json")[1] == "taken"
+    assert start(tmp_path / "run.txt")[1] == "taken"
 
 
 def test_a_run_on_another_machine_is_never_overruled(tmp_path):
-    mark = mark_of(tmp_path, host="node-7")
-    with pytest.raises(FolderTaken, match="on node-7, begun .*no longer lives, delete .*mark.json"):
-        take_folder(mark, ["snakemake"])
-    assert json.loads(mark.read_text())["host"] == "node-7"
+    lock = lock_of(tmp_path, host="node-7")
+    with pytest.raises(FolderTaken, match="on node-7, begun .*no longer lives, delete .*run.txt"):
+        take_folder(lock, ["snakemake"])
+    assert "on node-7, begun" in lock.read_text()
 
 
-def test_a_file_system_without_locks_goes_by_the_mark(tmp_path, monkeypatch):
+def test_a_file_system_without_locks_goes_by_the_text(tmp_path, monkeypatch):
     def unknown(*arguments):
         raise OSError("no locks available")
 
     monkeypatch.setattr("fcntl.flock", unknown)
-    with pytest.raises(FolderTaken, match=f"process {os.getpid()} "):
-        take_folder(mark_of(tmp_path, process=os.getpid()), ["snakemake"])
-    restarted = mark_of(tmp_path, process=os.getpid(), boot="another start of the machine")
-    assert take_folder(restarted, ["snakemake"]).process == os.getpid()
-    assert take_folder(mark_of(tmp_path), ["snakemake"]).command == "snakemake -j2"
+    with pytest.raises(FolderTaken, match="process 12 .*no longer lives, delete .*run.txt"):
+        take_folder(lock_of(tmp_path), ["snakemake"])
+    assert take_folder(tmp_path / "other.txt", ["snakemake"]) == ""
 
 
-@pytest.mark.parametrize("content", ["", "no mark", "{}", "[1]"])
-def test_a_damaged_mark_is_that_of_no_run(tmp_path, content):
-    (tmp_path / "mark.json").write_text(content)
-    assert take_folder(tmp_path / "mark.json", ["snakemake"]) is None
+@pytest.mark.parametrize("content", ["", "no run", "{}", "process 1"])
+def test_a_damaged_text_names_no_run(tmp_path, content):
+    (tmp_path / "run.txt").write_text(content)
+    assert take_folder(tmp_path / "run.txt", ["snakemake"]) == ""
 
 
 def test_temporary_files_of_dead_processes_alone_are_removed(start, tmp_path, reliability):
-    process, _ = start(tmp_path / "mark.json")
+    process, _ = start(tmp_path / "run.txt")
     dead = subprocess.Popen([sys.executable, "-c", ""])
     dead.wait()
     names = [
@@ -132,17 +113,16 @@ def test_temporary_files_of_dead_processes_alone_are_removed(start, tmp_path, re
         temporary.touch()
         assert remove_left_over([tmp_path, tmp_path / "none"]) == [tmp_path / names[0]]
     there = {path.name for path in tmp_path.iterdir()}
-    assert there == {*names[1:], *kept, "mine.csv", "mark.json"}
+    assert there == {*names[1:], *kept, "mine.csv", "run.txt"}
     reliability.fault(
         "temporary files of a killed job", "the next run removes those of dead processes"
     )
 
 
 def test_a_run_says_that_it_continues_a_killed_one(tmp_path):
-    owner = Owner("vm", "", 12, "2026-01-01 10:00:00 UTC", "snakemake -j2")
-    assert start_text(None, []) == []
-    killed, removed = start_text(owner, [tmp_path])
-    assert killed.startswith("The last run was killed: process 12 on vm, begun 2026-01-01 10:00:00")
+    assert start_text("", []) == []
+    killed, removed = start_text(take_folder(lock_of(tmp_path), ["snakemake"]), [tmp_path])
+    assert killed.startswith(f"The last run was killed: process 12 on {HOST}, begun 2026-01-01 10:")
     assert removed == "1 temporary files of killed jobs are removed."
 
 

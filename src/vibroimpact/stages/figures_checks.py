@@ -1,0 +1,30 @@
+"""Draw the figures that compare the methods and check the simulations."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from vibroimpact.config.stage_settings import StageSettings
+from vibroimpact.figures.drawing import save_plots
+from vibroimpact.figures.study import checks, equivalent
+from vibroimpact.io.records import read_table
+from vibroimpact.reduction.model_file import read_model
+from vibroimpact.study.case_files import read_case
+
+
+def make(given: Any, made: Any, params: Any) -> None:
+    """Draw the figures that compare the methods and check the simulations.
+
+    given: model, records, table. made: figures. params: config.
+    """
+    config, model = StageSettings(params.config), read_model(given.model)
+    rows = read_table(given.table)
+    records = checks.records_shown(given.records, read_case)
+    plots = [
+        *equivalent.figure_13_equivalent_support(config, model, rows),
+        *equivalent.collapse(config, model, rows),
+        *checks.energy_balance(config, records),
+        *checks.contact_statistics(config, model, records),
+    ]
+    save_plots(plots, Path(made.figures[0]).parent)

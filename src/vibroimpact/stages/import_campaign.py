@@ -1,0 +1,29 @@
+"""Make a campaign of a folder of measurements, check it and draw it."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+from vibroimpact.campaign.file import write_campaign
+from vibroimpact.campaign.importing.assemble import import_folder
+from vibroimpact.campaign.importing.report import write_report
+from vibroimpact.figures.discrepancy.quicklook import quicklook
+from vibroimpact.figures.drawing import save_plots
+from vibroimpact.io.signal_files.signals import ImportProblem
+
+
+def make(given: Any, made: Any, params: Any) -> None:
+    """Make a campaign of a folder of measurements, check it and draw it.
+
+    made: campaign, table, text, checks, figure. params: folder. Raises SystemExit with the
+    problems of the folder.
+    """
+    try:
+        campaign, rows = import_folder(params.folder)
+    except ImportProblem as problem:
+        sys.exit(str(problem))
+    write_campaign(campaign, made.campaign)
+    write_report(params.folder, campaign, rows, made)
+    save_plots(quicklook(campaign), Path(made.figure[0]).parent)

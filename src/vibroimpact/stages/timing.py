@@ -1,0 +1,23 @@
+"""Sum the benchmark files and logs of a study into a table and a figure."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from vibroimpact.config.stage_settings import StageSettings
+from vibroimpact.figures.drawing import save_plots
+from vibroimpact.figures.study.timing import timing
+from vibroimpact.io.records import write_table
+from vibroimpact.study.timing import study_timing
+
+
+def make(given: Any, made: Any, params: Any) -> None:
+    """Sum the benchmark files and logs of a study into a table and a figure.
+
+    given: benchmarks. made: table, figures. params: config, logs.
+    """
+    rows = study_timing(given.benchmarks, params.logs)
+    write_table(rows, made.table)
+    plots = timing(StageSettings(params.config), rows)
+    save_plots(plots, Path(made.figures[0]).parent)
