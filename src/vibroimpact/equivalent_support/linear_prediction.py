@@ -1,10 +1,16 @@
 """Comparison of the equivalent linear tube with the non-linear one where nothing was fitted."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from vibroimpact.linear.responses import frf
+from vibroimpact.reduction.modal_model import ModalModel
 
 BANDS_HZ = ((5.0, 20.0), (20.0, 40.0), (40.0, 60.0), (60.0, 100.0), (100.0, 200.0))
 RESOLUTION_HZ = 0.01
@@ -34,7 +40,14 @@ class Response:
     contact: float
 
 
-def linear_response(model, k, c, load, band_Hz, duration_s) -> Response:
+def linear_response(
+    model: ModalModel,
+    k: float,
+    c: float,
+    load: float,
+    band_Hz: Sequence[float],
+    duration_s: float,
+) -> Response:
     """Return the Response of the linear tube with support (k N/m, c N s/m).
 
     load: RMS of the force, N, flat in band_Hz.
@@ -54,12 +67,18 @@ def linear_response(model, k, c, load, band_Hz, duration_s) -> Response:
     return response_of_psds(model, frequency, power[:places], force, duration_s)
 
 
-def displacement_and_stress(model) -> np.ndarray:
+def displacement_and_stress(model: ModalModel) -> np.ndarray:
     """Return (mode, sensor + 2 section): the sensors, then both bending stresses per section."""
     return np.hstack([model.sensor_shapes, model.stress_shapes.reshape(len(model.omega), -1)])
 
 
-def response_of_psds(model, frequency, power, force, duration_s) -> Response:
+def response_of_psds(
+    model: ModalModel,
+    frequency: np.ndarray,
+    power: np.ndarray,
+    force: np.ndarray,
+    duration_s: float,
+) -> Response:
     """Return the Response of a linear tube from its PSDs on evenly spaced frequencies.
 
     frequency: (frequency,) Hz. power: (output, frequency) m²/Hz and Pa²/Hz, of the outputs of
@@ -98,7 +117,7 @@ def amplified(response: Response, gain: float) -> Response:
     )
 
 
-def expected_peak_factor(crossings):
+def expected_peak_factor(crossings: Any) -> Any:
     """Return the expected maximum of a Gaussian process, in standard deviations.
 
     crossings: expected number of upcrossings of the mean.
@@ -119,7 +138,9 @@ def _support_shapes(model):
     )
 
 
-def recorded_response(record, frequency, psd, names) -> Response:
+def recorded_response(
+    record: xr.Dataset, frequency: np.ndarray, psd: np.ndarray, names: Sequence[str]
+) -> Response:
     """Return the Response of a non-linear record.
 
     record: Dataset with its statistics.
@@ -143,7 +164,9 @@ def _named(record, axis, name):
     )
 
 
-def prediction_rows(labels, linear: Response, seeds: list[Response], sensors) -> list[dict]:
+def prediction_rows(
+    labels: Mapping[str, Any], linear: Response, seeds: list[Response], sensors: Sequence[str]
+) -> list[dict]:
     """Return the rows that compare one linear Response with the non-linear ones of several seeds.
 
     labels: columns that identify the case.
@@ -194,23 +217,23 @@ def _largest(values, count=3):
     return sorted(values, key=values.get, reverse=True)[:count]
 
 
-def band_level(response, sensor, low, high):
+def band_level(response: Response, sensor: str, low: float, high: float) -> float:
     """Return the root of a sensor's mean PSD between two frequencies in Hz, in m/sqrt(Hz)."""
     inside = (response.frequency >= low) & (response.frequency < high)
     return float(np.sqrt(np.mean(response.psd[sensor][inside])))
 
 
-def compared_row(quantity, of, unit, linear, seeds) -> dict:
+def compared_row(quantity: str, of: str, unit: str, linear: float, seeds: Sequence[float]) -> dict:
     """Return the columns that compare a linear value with those of several seeds.
 
     They are the last columns of prediction_rows.
     """
-    seeds = np.asarray(seeds, dtype=float)
-    nonlinear = float(np.sqrt(np.mean(seeds**2)))
+    values = np.asarray(seeds, dtype=float)
+    nonlinear = float(np.sqrt(np.mean(values**2)))
     error = 20.0 * np.log10(linear / nonlinear) if linear > 0.0 and nonlinear > 0.0 else np.nan
     scatter = (
-        8.686 * seeds.std(ddof=1) / np.sqrt(seeds.size) / nonlinear
-        if seeds.size > 1 and nonlinear > 0.0
+        8.686 * values.std(ddof=1) / np.sqrt(values.size) / nonlinear
+        if values.size > 1 and nonlinear > 0.0
         else np.nan
     )
     return {
@@ -225,7 +248,7 @@ def compared_row(quantity, of, unit, linear, seeds) -> dict:
     }
 
 
-def summary_rows(rows) -> list[dict]:
+def summary_rows(rows: Sequence[dict]) -> list[dict]:
     """Return rows per geometry, law, quantity and regime: median and worst error in dB.
 
     usable: "yes" where every case is within 2 dB, "with care" where the median is, else "no".

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.identify.estimate import table_rows
 from vibroimpact.identify.identify_case import identify_case
 from vibroimpact.linear.responses import FREQUENCY_CHUNK
@@ -137,7 +138,10 @@ def _mean_motion(
 
 
 def one_for_all(
-    settings_of_all, model: ModalModel, records: Sequence[xr.Dataset], spectra: Sequence[xr.Dataset]
+    settings_of_all: StageSettings,
+    model: ModalModel,
+    records: Sequence[xr.Dataset],
+    spectra: Sequence[xr.Dataset],
 ) -> list[dict]:
     """Return the rows of equivalent.csv that one k and c for all supports has in the same cases.
 
@@ -154,7 +158,7 @@ def one_for_all(
 
 
 def supports_prediction_rows(
-    settings,
+    settings: StageSettings,
     model: ModalModel,
     equivalent: Mapping[str, Sequence[Mapping]],
     records: Sequence[xr.Dataset],
