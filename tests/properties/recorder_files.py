@@ -180,6 +180,8 @@ def write_csv(draw, path, recording):
     if style == "twice":
         header[-1] = header[-2]
         recording.owes(REFUSED)
+    if mark == " " and any(" " in unit for unit in recording.units.values()):
+        recording.owes(EITHER)
     rows = [
         [text(value) for value in row]
         for row in zip(time, *recording.signals.values(), strict=True)
