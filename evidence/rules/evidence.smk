@@ -2,7 +2,7 @@
 # with it. An installed package has none of them.
 EVIDENCE = as_input(ROOT / "evidence")
 sys.path.append(os.path.abspath(ROOT))
-os.environ["PYTHONPATH"] += os.pathsep + os.path.abspath(ROOT)
+os.environ.update(PYTHONPATH=os.pathsep.join(map(os.path.abspath, (SOURCE, ROOT))))
 
 
 def evidence(script):
