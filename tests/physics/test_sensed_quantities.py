@@ -50,7 +50,7 @@ def of_modes(model, chosen, **values):
     """The model with some of its modes alone."""
     names = ("omega", "damping", "contact_shapes", "drive_shapes", "sensor_shapes", "line_shapes")
     names += ("stress_shapes", "element_shapes", "initial_displacement", "initial_velocity")
-    names += ("constant_force",)
+    names += ("constant_force", "fluid_shapes")
     return replace(model, **{name: getattr(model, name)[chosen] for name in names} | values)
 
 

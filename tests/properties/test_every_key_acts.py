@@ -39,6 +39,7 @@ EXEMPT = {
     "flow.velocity_m_per_s": "is read by `vibroimpact stability` alone",
     "flow.criterion": "is read by `vibroimpact stability` alone",
     "flow.coupling.reduced_velocity": "makes a warning alone",
+    "wear.": "acts on the wear life alone, see tests/wear",
     "structure.points": "are rows of matrices in files",
     "excitation.sampling_frequency_Hz": "must agree with the measured file",
     "initial.displacement.values.0.at_m": "is an end of the tube, within 5 mm",

@@ -48,7 +48,7 @@ def test_the_script_runner_sees_a_warning(study, monkeypatch):
     def warning(*arguments):
         return np.float64(1.0) / np.float64(0.0)
 
-    monkeypatch.setattr("vibroimpact.study.statistics_table.statistics_rows", warning)
+    monkeypatch.setattr("vibroimpact.stages.statistics.statistics_rows", warning)
     with pytest.raises(RuntimeWarning, match="divide by zero"):
         study.run("statistics", {"records": study.files("records")}, {"table": "none"})
 

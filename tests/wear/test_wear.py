@@ -28,7 +28,8 @@ from vibroimpact.wear.depth import (
     volume_of,
 )
 from vibroimpact.wear.laws import Archard, EdfMz
-from vibroimpact.wear.life import wear_life, worn_life
+from vibroimpact.wear.life import worn_life
+from vibroimpact.wear.of_study import wear_life
 
 ROOT = Path(__file__).parents[2]
 RATES = {4.0: (0.0, 1.0e-5), 20.0: (2.0e-3, 1.0e-3)}  # W at the two supports, by load
@@ -208,6 +209,17 @@ def test_the_limit_is_reached_after_its_years(results):
     worn = wear_life(results, Wear(coefficient_m2_per_N=(2e-14,)))[-2]
     again = wear_life(results, Wear(coefficient_m2_per_N=(2e-14,), years=worn.years_to_limit))[-2]
     assert again.wall_share == pytest.approx(0.4, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "key", ["coefficient_m2_per_N", "years", "duty", "wall_limit", "tilt_deg", "tube_share"]
+)
+def test_every_number_of_the_section_acts(results, key):
+    """The property that tests/properties/test_every_key_acts.py asks of the other sections."""
+    values = {"coefficient_m2_per_N": (1e-15,), "years": 30.0, "duty": 0.8, "wall_limit": 0.3}
+    values |= {"tilt_deg": 0.5, "tube_share": 0.6}
+    moved = values | {key: (1.1e-15,) if key == "coefficient_m2_per_N" else 1.1 * values[key]}
+    assert wear_life(results, Wear(**values)) != wear_life(results, Wear(**moved))
 
 
 def test_lands_have_their_own_rows(results):

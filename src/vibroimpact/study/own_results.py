@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from vibroimpact.config.reading import Config
+from vibroimpact.config.schema import Config
 from vibroimpact.config.stage_keys import stage_params
 from vibroimpact.io.provenance import config_digest
 from vibroimpact.io.records import RecordError, read_attributes

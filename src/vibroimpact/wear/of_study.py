@@ -1,0 +1,25 @@
+"""The wear life of a finished study, from its folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from vibroimpact.config.reading import load_config
+from vibroimpact.config.wear import Wear
+from vibroimpact.study.own_results import own_records
+from vibroimpact.study.run_files import CONFIG_FILE
+
+from .life import NoWear, WearRow, wear_rows
+
+
+def wear_life(folder: str | Path, wear: Wear) -> list[WearRow]:
+    """Return the WearRows of a study's folder.
+
+    Raises NoWear, ConfigError, and RecordError where a record is missing or of another
+    configuration than config.yaml there.
+    """
+    folder = Path(folder)
+    if not any((folder / "records").glob("*.nc")):
+        raise NoWear(f"{folder / 'records'}: there are no records: give the results of a study")
+    config = load_config(folder / CONFIG_FILE)
+    return wear_rows(config, own_records(folder, config), wear)
