@@ -1,18 +1,16 @@
 """What only free motion shows is looked for by free runs; what can not be run is refused."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
 from vibroimpact.config.reading import check_config
 from vibroimpact.diagnosis import free_runs as module
-from vibroimpact.diagnosis.coordinates import Coordinate
 from vibroimpact.diagnosis.decision import decide
 from vibroimpact.diagnosis.explanations import Point, Structure, Term
 from vibroimpact.diagnosis.free_runs import free_runs
 from vibroimpact.diagnosis.free_search import free_search
-from vibroimpact.diagnosis.gauss_newton import Fit
 from vibroimpact.diagnosis.measurement.usable import Refused
 from vibroimpact.diagnosis.screening import Screened
 from vibroimpact.diagnosis.search import Hypothesis, Search, search
@@ -37,9 +35,8 @@ def played(comparison):
 
 def searched(*points):
     """A search in which nothing gains, and the points that were screened."""
-    fit = Fit(Point(), (), np.zeros(0), np.zeros(0), 0.0, np.zeros((0, 0)))
-    screened = {"nothing": [Screened(point, 0.0) for point in points]}
-    return Search(Hypothesis(fit, 0.0, 0.0, 0.0), (), screened=screened)
+    nothing = Hypothesis(SimpleNamespace(point=Point()), 0.0, 0.0, 0.0)
+    return Search(nothing, (), screened=tuple(Screened(point, 0.0) for point in points))
 
 
 def test_what_closes_the_spectra_of_free_runs_is_named(played):
@@ -52,20 +49,6 @@ def test_what_closes_the_spectra_of_free_runs_is_named(played):
     assert (after.after != runs.after).any() and (after.before == runs.before).all()
     fit = found.best.fit
     assert abs(fit.rows[0].from_value(60.0) - fit.x[0]) < 1.645 * fit.deviation[0]
-
-
-def test_one_more_effect_is_found_beside_the_named_one(played):
-    """Its fit is kept, with the value that was fitted."""
-    comparison, runs = played
-    base, factor = TRIED[2], Coordinate("term", 0, 1.0, log=True)
-    fit = Fit(base, (factor,), np.array([0.001]), np.zeros(0), 0.0, np.array([[25.0]]))
-    best = Hypothesis(fit, 1.0, 1.0, 0.01)
-    screened = {base.name: [Screened(base.beside(TRIED[1].terms[0]), 0.0)]}
-    search = replace(searched(), hypotheses=(best,), screened=screened)
-    found, _ = free_search(comparison, search, decide(search, 5.0, 5.0), runs)
-    assert found.verdict == "named" and found.by_free_runs
-    assert found.best.ids == ("mode_frequency_error", "quadratic_drag")
-    assert found.best.fit.rows[0] == factor and found.best.fit.deviation[0] == pytest.approx(0.2)
 
 
 def test_nothing_is_named_where_no_trial_closes_the_spectra(played):

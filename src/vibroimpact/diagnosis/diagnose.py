@@ -153,18 +153,21 @@ def _searched(
     effects = [each for each in EFFECTS.values() if each.reported not in unseen]
 
     def left(point: Point) -> bool:
-        after = with_after(runs, structure, signals, point)
-        return bool(surely_off(after, structure, signals, point, signals.fit()))
+        return _far(with_after(runs, structure, signals, point), signals)
 
     searched = search(comparison, most, effects, log, left)
-    far = far_off(distance(runs, signals, signals.fit()))
-    if comparison.lost and far and not gains(searched):
+    if comparison.lost and _far(runs, signals) and not gains(searched):
         log("nothing gains on the records that hold the model: the others are compared too")
         wider = comparison.widened()
         again = search(wider, most, effects, log, left)
         if gains(again):
             return wider, again
     return comparison, searched
+
+
+def _far(runs: FreeRuns, signals: Signals) -> bool:
+    """Return whether spectra after completion are far off on the fitted records."""
+    return far_off(distance(runs, signals, signals.fit()))
 
 
 def _run_identified(

@@ -1,9 +1,9 @@
 """What only free motion shows.
 
 Friction keeps a tube from whirling; held to a motion that does not whirl, a model without friction
-does not whirl either, and the holding force tells nothing. Where the spectra of free runs stay off
-by more than chance, the points that screening found best beside what is named run free as well.
-This compares statistics of chaotic motion: a place can be told, a value hardly.
+does not whirl either, and the holding force tells nothing. Where the spectra of free runs stay far
+above their floor, the points that screening found best beside what is known run free as well. This
+compares statistics of chaotic motion: a place can be told, a value hardly.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import linalg
 
 from vibroimpact.verdict.misfit import excess
 
@@ -21,11 +20,10 @@ from .comparison import Comparison
 from .completed import NINETY_SD
 from .constants import FREE_RIVAL_DB, LEAST_GAIN, PARTLY
 from .coordinates import Coordinate, effect_coordinates, to_point, to_vector
-from .decision import Decision, conclusion
+from .decision import Decision, conclusion, far_off
 from .explanations import Point
-from .free_runs import FreeRuns, distance, surely_off, with_after
+from .free_runs import FreeRuns, distance, with_after
 from .gauss_newton import Fit
-from .measurement.signals import Signals
 from .search import Hypothesis, Search, difference
 
 RUN_FREE, PER_EFFECT = 12, 4  # points, and those of one effect
@@ -54,22 +52,18 @@ def free_search(
 ) -> tuple[Decision, FreeRuns]:
     """Return (Decision, FreeRuns): those given where free runs show nothing more.
 
-    runs: after completion with what is named, of the model as given where nothing is. It is looked
-    for one effect more, where records stay off by more than chance.
+    runs: of the model as given. Beside a hypothesis that is named nothing more is looked for.
     """
-    base = _base(searched, decision)
-    if base is None:
+    told = distance(runs, comparison.signals, comparison.signals.fit())
+    named = decision.verdict not in ("none", "unknown")
+    if named or told["after_dB"] is None or not far_off(told):
         return decision, runs
-    structure, signals = comparison.structure, comparison.signals
-    point = base.point if base.point.terms else Point()
-    records = surely_off(runs, structure, signals, point, signals.fit())[:RECORDS]
-    if not records:
-        return decision, runs
-    away = distance(runs, signals, records)["after_dB"]
-    trials = _run(comparison, _candidates(searched, base), runs, records)
+    records = _farthest(comparison, runs)
+    away = distance(runs, comparison.signals, records)["after_dB"]
+    trials = _run(comparison, _candidates(searched), runs, records)
     scanned = [point for trial in trials[:SCANNED] for point in _scan(comparison, trial.point)]
     trials = sorted([*trials, *_run(comparison, scanned, runs, records)], key=_away)
-    trials = _not_contradicted(comparison, base, trials)
+    trials = _not_contradicted(comparison, searched, trials)
     best: dict[tuple[str, ...], _Trial] = {}
     for trial in trials:
         if trial.closed >= PARTLY:
@@ -78,42 +72,11 @@ def free_search(
         log(f"{trial.point.name}: spectra {away:.1f} dB off without it, {trial.away:.1f} with it")
     if not best:
         return decision, runs
-    after = with_after(runs, structure, signals, next(iter(best.values())).point)
-    if base.point.terms and _farther(after, runs, signals):
-        return decision, runs
-    return _decided(comparison, searched, base, decision, trials, list(best.values())), after
-
-
-def _base(searched: Search, decision: Decision) -> Hypothesis | None:
-    """Return the Hypothesis beside which one more effect is looked for: what is named, or nothing;
-    None where the verdict leaves open what it would stand beside.
-    """
-    if decision.verdict == "named":
-        return decision.best
-    return searched.nothing if decision.verdict in ("none", "unknown") else None
-
-
-def _farther(after: FreeRuns, before: FreeRuns, signals: Signals) -> bool:
-    """Return whether the spectra that took no part are farther off than before."""
-    records = signals.holdout() if len(signals.holdout()) else signals.fit()
-    now, was = (distance(runs, signals, records)["after_dB"] for runs in (after, before))
-    return now is None or was is None or now > was
-
-
-def _decided(
-    comparison: Comparison,
-    searched: Search,
-    base: Hypothesis,
-    decision: Decision,
-    trials: Sequence[_Trial],
-    best: Sequence[_Trial],
-) -> Decision:
-    """Return the Decision on the best trials, one of each effect, the nearest first."""
-    closed = best[0].closed
-    weight = np.exp([(best[0].away - trial.away) / FREE_RIVAL_DB for trial in best])
-    found = [_hypothesis(comparison, searched.nothing, base, each, trials) for each in best]
+    closed = next(iter(best.values())).closed
+    weight = np.exp([(trials[0].away - trial.away) / FREE_RIVAL_DB for trial in best.values()])
+    found = [_hypothesis(comparison, searched.nothing, each, trials) for each in best.values()]
     ranked = tuple(zip(found, map(float, closed * weight / weight.sum()), strict=True))
-    return replace(
+    decision = replace(
         decision,
         verdict=conclusion(ranked),
         ranked=ranked,
@@ -121,28 +84,32 @@ def _decided(
         something_else=1.0 - closed,
         by_free_runs=True,
     )
+    runs = with_after(runs, comparison.structure, comparison.signals, found[0].point)
+    return decision, runs
 
 
-def _candidates(searched: Search, base: Hypothesis) -> list[Point]:
-    """Return the points that were fitted with one term more than the base, and those that screening
-    found best beside it, with its nuisances.
+def _farthest(comparison: Comparison, runs: FreeRuns) -> list[int]:
+    """Return the fitted records whose spectra after completion are farthest above their floor."""
+    beyond = {}
+    for record in map(int, comparison.signals.fit()):
+        told = distance(runs, comparison.signals, [record])
+        if told["after_dB"] is not None and told["floor_dB"] is not None:
+            beyond[record] = told["after_dB"] - told["floor_dB"]
+    return sorted(beyond, key=lambda record: -beyond[record])[:RECORDS]
+
+
+def _candidates(searched: Search) -> list[Point]:
+    """Return the points that were fitted, and those that screening found best, with the nuisances
+    of nothing.
     """
-    known, count = [term.effect_id for term in base.point.terms], len(base.point.terms)
-    chosen = {
-        each.point.name: each.point
-        for each in searched.hypotheses
-        if [term.effect_id for term in each.point.terms[:count]] == known
-        and len(each.point.terms) > count
-    }
+    chosen = {each.point.name: each.point for each in searched.hypotheses}
     per_effect: dict[str, int] = {}
-    for each in searched.screened.get(base.point.name, ()):
-        term = each.point.terms[-1]
-        tried, effect = base.point.beside(term), term.effect_id
-        if each.point.name in chosen or per_effect.get(effect, 0) >= PER_EFFECT:
+    for each in searched.screened:
+        name, effect = each.point.name, each.point.terms[-1].effect_id
+        if name in chosen or per_effect.get(effect, 0) >= PER_EFFECT or not np.isfinite(each.gain):
             continue
-        if np.isfinite(each.gain):
-            per_effect[effect] = per_effect.get(effect, 0) + 1
-            chosen[each.point.name] = tried
+        per_effect[effect] = per_effect.get(effect, 0) + 1
+        chosen[name] = searched.nothing.point.beside(each.point.terms[-1])
     return list(chosen.values())[:RUN_FREE]
 
 
@@ -164,11 +131,11 @@ def _run(
 
 
 def _not_contradicted(
-    comparison: Comparison, base: Hypothesis, trials: Sequence[_Trial]
+    comparison: Comparison, searched: Search, trials: Sequence[_Trial]
 ) -> list[_Trial]:
     """Return the trials with which the holding force is no larger than without."""
     bench = comparison.fitted()
-    before, *after = holding_lines(bench, [base.point, *(t.point for t in trials)])
+    before, *after = holding_lines(bench, [searched.nothing.point, *(t.point for t in trials)])
     highest = misfit(bench, before) + LEAST_GAIN * effective_lines(bench, before)
     return [t for t, own in zip(trials, after, strict=True) if misfit(bench, own) < highest]
 
@@ -201,27 +168,19 @@ def _scan(comparison: Comparison, point: Point) -> list[Point]:
 
 
 def _hypothesis(
-    comparison: Comparison,
-    nothing: Hypothesis,
-    base: Hypothesis,
-    own: _Trial,
-    trials: Sequence[_Trial],
+    comparison: Comparison, nothing: Hypothesis, own: _Trial, trials: Sequence[_Trial]
 ) -> Hypothesis:
-    """Return the Hypothesis of a trial, compared with nothing; of its base it keeps the fit."""
-    last = len(own.point.terms) - 1
-    every = effect_coordinates(own.point.terms, comparison.sizes)
-    x, at = to_vector(own.point, every), _first_value(own.point, every)
-    deviation = np.ones(len(every))
-    deviation[at] = _reach(x[at], at, own, trials, every) / NINETY_SD
-    new = np.array([row.index == last for row in every])
-    rows = (*base.fit.rows, *(row for row in every if row.index == last))
-    information = linalg.block_diag(base.fit.information, np.diag(1.0 / deviation[new] ** 2))
+    """Return the Hypothesis of a trial, compared with nothing."""
+    rows = effect_coordinates(own.point.terms, comparison.sizes)
+    x, at = to_vector(own.point, rows), _first_value(own.point, rows)
+    deviation = np.ones(len(rows))
+    deviation[at] = _reach(x[at], at, own, trials, rows) / NINETY_SD
     fitted, apart = comparison.fitted(), comparison.apart()
     before, after = holding_lines(fitted, [nothing.point, own.point])
     value = misfit(fitted, after)
     gain = (misfit(fitted, before) - value) / effective_lines(fitted, before)
     told = difference(apart, *holding_lines(apart, [nothing.point, own.point]))
-    fit = Fit(own.point, rows, np.r_[base.fit.x, x[new]], after, value, information)
+    fit = Fit(own.point, tuple(rows), x, after, value, np.diag(1.0 / deviation**2))
     return Hypothesis(fit, gain, *told)
 
 

@@ -80,15 +80,15 @@ class Search:
     """What was found: nothing, and hypotheses, best first.
 
     floors {name of a Point: (mean log power, that of a model in which nothing else is missing)},
-    where known. failed: effects of which no value could be run. screened {name of a Point: what
-    was screened beside it, best first}.
+    where known. failed: effects of which no value could be run. screened: what was screened
+    beside nothing, best first.
     """
 
     nothing: Hypothesis
     hypotheses: tuple[Hypothesis, ...]
     floors: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     failed: tuple[str, ...] = ()
-    screened: Mapping[str, Sequence[Screened]] = field(default_factory=dict)
+    screened: tuple[Screened, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,8 +111,8 @@ def search(
 ) -> Search:
     """Return the Search of a Comparison for up to `most` effects at once.
 
-    spectra_left: whether spectra of free runs of a Point stay off: then one more effect is looked
-    for, even if the holding force is near its floor.
+    spectra_left: whether spectra of free runs of a Point are far off: then one more effect is
+    looked for, even if the holding force is near its floor.
 
     Raises Refused where the model as given can not be run.
     """
@@ -129,10 +129,10 @@ def search(
     base = nothing
     failed: tuple[str, ...] = ()
     floors: dict[str, tuple[float, float]] = {}
-    screened: dict[str, Sequence[Screened]] = {}
+    screened: tuple[Screened, ...] = ()
     for size in range(1, most + 1):
         screening = _screened(at, base.point)
-        screened[base.point.name] = screening.ranked
+        screened = screened or screening.ranked
         failed = tuple(sorted({*failed, *screening.failed}))
         raced = _race(at, screening.ranked, base.point)
         new = _kept(at, _finals(at, [each.point for each in raced[:FINALISTS]], nothing), nothing)
@@ -145,7 +145,7 @@ def search(
         if best.worth - base.worth < needed_gain(base.worth):
             break
         if len(best.point.terms) > 1:
-            others = _without_first(at, best, nothing, screened[nothing.point.name], log)
+            others = _without_first(at, best, nothing, screened, log)
             found |= {each.point.name: each for each in others}
             best = max([best, *others], key=_rated)
         base = best
