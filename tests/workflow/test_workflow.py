@@ -58,7 +58,7 @@ class Study:
     def __init__(self, folder):
         self.folder = folder
         ignore = shutil.ignore_patterns("__pycache__")
-        for name in ("src", "workflow", "config", "examples"):
+        for name in ("src", "workflow", "config", "examples", "evidence"):
             shutil.copytree(ROOT / name, folder / name, ignore=ignore)
         shutil.copy(ROOT / "Snakefile", folder)
         (folder / "profiles").symlink_to(Path("workflow", "profiles"))
