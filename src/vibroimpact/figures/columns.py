@@ -57,7 +57,7 @@ COLUMNS = {
     "cpu_s": ("CPU time (s)", 1.0),
     "discrepancy_dB": ("Measured / simulated (dB)", 1.0),
     "velocity_ratio": ("Effective / critical velocity (-)", 1.0),
-    "velocity_over_critical": ("Velocity / critical, equivalent (-)", 1.0),
+    "velocity_over_critical": ("Velocity / critical velocity with k and c (-)", 1.0),
     "flow_velocity_m_per_s": ("Velocity of the flow (m/s)", 1.0),
     "z": ("z (standard deviations)", 1.0),
     "fit_score": ("Log evidence of the fitted records (-)", 1.0),

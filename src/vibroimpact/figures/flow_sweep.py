@@ -56,7 +56,8 @@ def _sheet(found: FlowSweep, gap: float, number: int) -> Sheet:
     )
     sheet.axes["work"].set_yscale("log")
     sheet.axes["response"].set_ylim(bottom=0.0)
-    sheet.legend(sheet.axes["response"], fontsize=7)
+    labels = sheet.axes["response"].get_legend_handles_labels()
+    sheet.figure.legend(*labels, loc="outside lower center", ncols=4, fontsize=7)
     return sheet
 
 
@@ -70,7 +71,9 @@ def _critical(sheet: Sheet, velocity: float, name: str, colour: str) -> None:
     """Mark a critical velocity, where there is one."""
     if np.isfinite(velocity):
         axes, column = sheet.axes["response"], "flow_velocity_m_per_s"
-        sheet.mark(axes, column, velocity, name, color=colour, linewidth=0.9, linestyle=":")
+        label = "critical velocity, linear" if name == "closed" else None
+        style: dict[str, Any] = {"color": colour, "linewidth": 0.9, "linestyle": ":"}
+        sheet.mark(axes, column, velocity, name, label=label, **style)
 
 
 def _curves(sheet: Sheet, runs: list[FlowRun], onset: Onset, colour: str) -> None:
@@ -96,7 +99,7 @@ def _curves(sheet: Sheet, runs: list[FlowRun], onset: Onset, colour: str) -> Non
     }
     rms, work = median("rms_m"), median("wear_work_rate_W")
     name = f"{onset.load_rms_N:g} N, {start} start"
-    label = f"{onset.load_rms_N:g} N" if small else None
+    label = f"{onset.load_rms_N:g} N" + ("" if small else ", large start")
     bounded, worn = np.isfinite(rms), work > 0.0
     x = ("flow_velocity_m_per_s", velocities[bounded])
     y = ("response_rms_m", rms[bounded])
