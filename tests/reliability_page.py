@@ -4,12 +4,14 @@ A test states what it has shown through the fixture `reliability`. A statement c
 passes. Parallel workers send theirs to the main process with the report of the test.
 """
 
+import csv
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "reliability.md"
+TABLES = ROOT / "docs" / "evidence"
 RELIABILITY = pytest.StashKey[list]()
 HEADERS = {
     "faults": ("fault", "outcome"),
@@ -26,23 +28,31 @@ INTRODUCTION = """# Reliability
 
 <!-- Written by `make reliability`: do not edit. -->
 
-Every row is stated by a test that passed; faults with one outcome share a row.
+Every row of these tables is stated by a test that passed.
 
 - **Programs.** A profile of Snakemake is a program, and so is a configuration with `__use_yte__`
   under `--workflow-profile none`: Snakemake runs it before this package reads it. Run
   `vibroimpact check FILE` on files of others first; it runs nothing.
-- **Numbers.** A number of a configuration acts, or is refused: a test moves each number of the
-  schema and demands another model, force or setting of a stage. Exceptions: velocities and
-  criterion of `flow`, for `vibroimpact stability` alone; `record.stress_limit_Pa`, which changes
-  a flag; the rows of matrices in files; the sampling frequency of a force, which must be that
-  of its file. The stiffness of a support with a Hertzian contact acts on its friction alone, and
-  `grid.gap_m` names the case if every support has a gap of its own.
-- **Results.** Answers of another configuration than the one in their folder are refused:
-  `vibroimpact equivalent` compares the tables with it, `vibroimpact wear` the records and their
-  model. The other commands read no results.
-- **Campaigns.** Records are compared with each other without a model. No comparison can show a
-  swap of two sensors with like gains, the polarity of a sensor across the force that does not
-  follow it, and a factor below 4 of a record or below 5 of a channel.
+- **Numbers.** Every number of a configuration acts or is refused: a test moves each and demands
+  another model, force or setting of a stage. Exceptions: velocities and criterion of `flow`
+  (`vibroimpact stability` alone), `record.stress_limit_Pa` (a flag), the rows of matrices in
+  files, the sampling frequency of a force (that of its file). The stiffness of a support with a
+  Hertzian contact acts on its friction alone, and `grid.gap_m` names the case if every support
+  has a gap of its own.
+- **Results** of another configuration than the one in their folder are refused by `vibroimpact
+  equivalent` and `vibroimpact wear`.
+- **Campaigns** are checked without a model. This cannot show a swap of two sensors with like
+  gains, the polarity of a sensor across the force that does not follow it, and a factor below 4
+  of a record or below 5 of a channel.
+"""
+SECTION = """## {title}
+
+{summary} ([table](evidence/{file})).
+
+```{{csv-table}}
+:file: evidence/{file}
+:header-rows: 1
+```
 """
 
 
@@ -116,19 +126,45 @@ class _Collector:
     def pytest_sessionfinish(self, session):
         """Write the page in the main process."""
         if self.config.getoption("--reliability") and not hasattr(self.config, "workerinput"):
-            PAGE.write_text(page(self.config.stash[RELIABILITY]), encoding="utf-8")
+            write(self.config.stash[RELIABILITY])
 
 
-def page(rows):
-    """Return the page of rows (section, cells)."""
+def write(rows):
+    """Write the page and its tables from rows (section, cells)."""
     parts = [INTRODUCTION]
     for section, header in HEADERS.items():
         table = sorted({tuple(cells) for name, cells in rows if name == section})
         if section == "faults":
             table = by_outcome(table)
-        lines = [" | ".join(cells) for cells in (header, ["---"] * len(header), *table)]
-        parts.append(f"## {TITLES[section]}\n\n" + "\n".join(f"| {line} |" for line in lines))
-    return "\n".join(parts[:1]) + "\n" + "\n\n".join(parts[1:]) + "\n"
+        with table_file(section).open("w", encoding="utf-8", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerows([header, *table])
+        parts.append(
+            SECTION.format(
+                title=TITLES[section],
+                summary=summary(section, table),
+                file=table_file(section).name,
+            )
+        )
+    PAGE.write_text("\n".join(parts), encoding="utf-8")
+
+
+def table_file(section):
+    """Return the path of the table of a section."""
+    return TABLES / f"reliability_{section}.csv"
+
+
+def summary(section, table):
+    """Return the sentence above the table of a section."""
+    if section == "faults":
+        count = sum(len(row[0].split(SEPARATOR)) for row in table)
+        return f"{count} faults were tried; those with one outcome share a row"
+    if section == "inputs":
+        tried, refused, right = (sum(int(row[i]) for row in table) for i in (1, 2, 3))
+        return (
+            f"{tried:,} generated inputs of {len(table)} kinds: {refused:,} were refused with a"
+            f" sentence, {right:,} gave right results, none crashed"
+        )
+    return "Costs that must not grow with the size of a study"
 
 
 def by_outcome(rows):

@@ -30,7 +30,7 @@ def example_name(value):
     return name(value) if hasattr(value, "parts") else None
 
 
-OWN_STRUCTURE = ("your_structure", "your_supports")
+OWN_STRUCTURE = ("your_structure",)
 STRUCTURE = yaml.safe_load((ROOT / "config" / "four_supports.yaml").read_text())["structure"]
 
 

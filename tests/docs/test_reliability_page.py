@@ -1,14 +1,13 @@
 """The page of reliability has the rows that the tests state, and no others."""
 
 import ast
-import re
+import csv
 
 import pytest
 
 from tests.docs.markdown import ROOT
-from tests.reliability_page import HEADERS, SEPARATOR, TITLES, by_outcome
+from tests.reliability_page import HEADERS, SEPARATOR, by_outcome, table_file
 
-PAGE = ROOT / "docs" / "reliability.md"
 METHODS = {"fault": "faults", "inputs": "inputs", "scale": "scale"}
 
 
@@ -30,10 +29,9 @@ def stated(section):
 
 
 def rows(section):
-    """Return the cells of the page's table of a section."""
-    text = PAGE.read_text(encoding="utf-8")
-    part = re.search(rf"^## {TITLES[section]}\n+((?:\|.*\n)*)", text, re.M)[1]
-    return [line.strip("| ").split(" | ") for line in part.splitlines()[2:]]
+    """Return the cells of the table of a section."""
+    with table_file(section).open(encoding="utf-8", newline="") as file:
+        return list(csv.reader(file))[1:]
 
 
 @pytest.mark.parametrize("section", HEADERS)
