@@ -60,7 +60,7 @@ def _parser() -> argparse.ArgumentParser:
         description="Check a study configuration (.yaml), a measured campaign (.nc), the"
         " campaign.yaml of a folder of measurements, or the small file that asks for an identified"
         " structure. Prints one line per problem, or one line that says what the file is. The exit"
-        " code is 1 where there are problems.",
+        " code is 1 if there are problems.",
     )
     check.add_argument("file", metavar="FILE")
     check.set_defaults(command=_check)
@@ -85,7 +85,7 @@ def _parser() -> argparse.ArgumentParser:
         help="print the equivalent k and c of a study at a load and gap, and export them",
         description="Print the stiffness k and damping c that a linear model needs at the supports"
         " at one load and gap: from a finished study, interpolated inside its grid, or as an"
-        " estimate without a simulation. The exit code is 1 where there is no answer, or where a k"
+        " estimate without a simulation. The exit code is 1 if there is no answer, or where a k"
         " or c is not resolved; what is not resolved is never exported.",
     )
     add_arguments(answer)
@@ -94,7 +94,7 @@ def _parser() -> argparse.ArgumentParser:
         help="say what a model lacks, given a measured campaign",
         description="Hold the model to the measured motion and say which effect it lacks, where and"
         " how strong, and how sure that is. Prints one line per explanation that was fitted, then"
-        " the verdict. The exit code is 1 where the campaign can not be compared with the model.",
+        " the verdict. The exit code is 1 if the campaign can not be compared with the model.",
     )
     diagnose_command.add_arguments(diagnosis)
     compare = commands.add_parser(
@@ -105,7 +105,7 @@ def _parser() -> argparse.ArgumentParser:
         " is a universal file with frequency responses (dataset 58, function type 4) of one force,"
         " or of one accelerometer under a roving hammer, with its nodes; or a measured campaign,"
         " of which the record of the lowest load is taken. Supports are taken without contact. The"
-        " exit code is 1 where nothing can be compared.",
+        " exit code is 1 if nothing can be compared.",
     )
     compare.add_argument("file", metavar="FILE")
     compare.add_argument("--model", metavar="FILE", required=True, help="configuration")
@@ -117,7 +117,7 @@ def _parser() -> argparse.ArgumentParser:
         " campaign: contact force, time in contact, impacts, wear work rate, secant stiffness and"
         " damping. The model is held to the measured motion by dampers at the sensors; its contact"
         " forces are then those of the structure. Measured contact forces are not used, they are"
-        " shown beside. Values that can not be relied on say why. The exit code is 1 where the"
+        " shown beside. Values that can not be relied on say why. The exit code is 1 if the"
         " campaign can not be compared with the model.",
     )
     supports_command.add_arguments(supports)
@@ -146,7 +146,7 @@ def _parser() -> argparse.ArgumentParser:
         help="write the contact of the supports for another finite-element program",
         description="Write gaps and contact stiffnesses of the supports of a configuration as"
         " nonlinear elements of another program, at a gap of the case. For the equivalent linear"
-        " springs see `vibroimpact equivalent --export`. The exit code is 1 where a law is left"
+        " springs see `vibroimpact equivalent --export`. The exit code is 1 if a law is left"
         " out.",
     )
     contact_command.add_arguments(contact)
@@ -160,7 +160,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _check(options: argparse.Namespace) -> int:
-    """Check a file. Return 1 where it has problems."""
+    """Check a file. Return 1 if it has problems."""
     checked = _campaign if _is_netcdf(options.file) else _configuration
     summary, problems = checked(options.file)
     for problem in problems:
@@ -171,7 +171,7 @@ def _check(options: argparse.Namespace) -> int:
 
 
 def _compare(options: argparse.Namespace) -> int:
-    """Hold frequency responses to a linear model. Return 1 where it can not be done."""
+    """Hold frequency responses to a linear model. Return 1 if it can not be done."""
     from vibroimpact.campaign.file import CampaignError, read_campaign
     from vibroimpact.campaign.importing.frf import read_frfs
     from vibroimpact.config.problems import ConfigError
@@ -209,7 +209,7 @@ def _compare(options: argparse.Namespace) -> int:
 
 
 def _new(options: argparse.Namespace) -> int:
-    """Lay out a folder for a study. Return 1 where it can not be done."""
+    """Lay out a folder for a study. Return 1 if it can not be done."""
     from vibroimpact.study_folder.new_study import NewStudyError, new_study
 
     try:
@@ -254,7 +254,7 @@ def _is_netcdf(path: str) -> bool:
 
 
 def _campaign(path: str) -> tuple[str | None, list[str]]:
-    """Return (what a campaign is, None where it is refused; its problems and warnings)."""
+    """Return (what a campaign is, None if it is refused; its problems and warnings)."""
     from vibroimpact.campaign.checks.file_checks import check_file, refused
     from vibroimpact.diagnosis.measurement.comparable import campaign_problems, channel_rows
 
@@ -279,7 +279,7 @@ def _campaign(path: str) -> tuple[str | None, list[str]]:
 
 
 def _configuration(path: str) -> tuple[str | None, list[str]]:
-    """Return (what a YAML file is, None where it has problems; its problems)."""
+    """Return (what a YAML file is, None if it has problems; its problems)."""
     from vibroimpact.config.problems import ConfigError
     from vibroimpact.config.yaml_file import read_yaml
 

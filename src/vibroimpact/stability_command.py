@@ -75,7 +75,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command. Return 1 where there is no answer."""
+    """Run the command. Return 1 if there is no answer."""
     from .config.problems import ConfigError
     from .config.reading import load_config
     from .flow.stability import NoFlow, stability

@@ -36,7 +36,7 @@ def moves_with_base(signals: CampaignSignals) -> np.ndarray:
 def base_motion(signals: CampaignSignals) -> list[np.ndarray] | None:
     """Return (channel, sample) in SI for every record: the base's own motion in each channel.
 
-    It is 0 in a channel that measures none of it. None where no force channel is a base
+    It is 0 in a channel that measures none of it. None if no force channel is a base
     acceleration.
     """
     moved = moves_with_base(signals)
@@ -117,7 +117,7 @@ def base_motion_rows(signals: CampaignSignals) -> Iterator[dict]:
 
 
 def _unit(directions: np.ndarray) -> np.ndarray:
-    """Return (vector, 3) with a length of 1, NaN where it is 0."""
+    """Return (vector, 3) with a length of 1, NaN if it is 0."""
     length = np.linalg.norm(directions, axis=1, keepdims=True)
     return directions / np.where(length > 0.0, length, np.nan)
 

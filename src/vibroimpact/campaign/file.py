@@ -14,7 +14,7 @@ Required variables:
 - channel_name (channel), channel_point (channel, xyz) m
 - channel_direction (channel, xyz): unit vector of the positive sense
 - force_channel_name, force_channel_point, force_channel_direction: the same for forces
-- gap (record): m, NaN where there is none
+- gap (record): m, NaN if there is none
 
 Variables filled in where they are missing (see fill_missing):
 
@@ -277,7 +277,7 @@ def checked_description(path: str | Path, force_needed: bool = True) -> xr.Datas
 def with_no_force(campaign: xr.Dataset) -> xr.Dataset:
     """Return a campaign without variables of a force as one with no force channels.
 
-    Its loads are NaN where they are not stated. Any other campaign is returned as it is.
+    Its loads are NaN if they are not stated. Any other campaign is returned as it is.
     """
     if any(str(name).startswith("force") for name in campaign.variables):
         return campaign
@@ -386,7 +386,7 @@ def _with_real_signals(campaign: xr.Dataset) -> xr.Dataset:
 def load_of(force: np.ndarray, rate: float, band_Hz: tuple[float, float] | None = None) -> float:
     """Return the load of a record: the RMS of its force (time,) about the mean, in its unit.
 
-    A constant reading, such as the offset of an amplifier, is no load. NaN where all samples are
+    A constant reading, such as the offset of an amplifier, is no load. NaN if all samples are
     missing; others that are missing are left out.
 
     rate: Hz.
@@ -500,7 +500,7 @@ def force_signal(campaign: xr.Dataset, record: int, force_channel: int = 0) -> n
 def measured_values(campaign: xr.Dataset, name: str, record: int) -> np.ndarray:
     """Return (channel, time) the valid samples of the force or response of a record, as stored.
 
-    NaN where a sample is missing: where it is not finite, or beyond LARGEST.
+    NaN if a sample is missing: where it is not finite, or beyond LARGEST.
     """
     values = campaign[name].values[record, :, : valid_count(campaign, record)].astype(float)
     return np.where(np.abs(values) <= LARGEST, values, np.nan)
@@ -536,7 +536,7 @@ def _factor(place: str, units: str, kind: str) -> float:
 def support_ratios(campaign: xr.Dataset) -> np.ndarray | None:
     """Return (support,) the clearance of each support over the gap of the record.
 
-    None where support_gap is not given. Raises CampaignError when the ratio differs between
+    None if support_gap is not given. Raises CampaignError when the ratio differs between
     records.
     """
     if "support_gap" not in campaign:

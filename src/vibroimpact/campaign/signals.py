@@ -59,7 +59,7 @@ class CampaignSignals:
     campaign.force_kinds. splits (record,): "fit" or "holdout".
     load_rms (record,): N, or m/s² of a base, as stated, or that of the force where it differs, see
     file.load_of.
-    gap (record,): m, NaN where there is none.
+    gap (record,): m, NaN if there is none.
     points (channel, xyz): m.
     directions (channel, xyz), force_directions (force_channel, xyz): unit vectors.
     stated_period: samples of a period as the file states it, 0 for none.
@@ -108,7 +108,7 @@ class CampaignSignals:
         return self.stated_period or common_period(driven)
 
     def require_units(self) -> CampaignSignals:
-        """Return the signals themselves. Raises CampaignError where a unit can not be used."""
+        """Return the signals themselves. Raises CampaignError if a unit can not be used."""
         for fault in (*self.unit_faults.values(), *self.force_unit_faults.values()):
             raise CampaignError(fault)
         return self
@@ -197,7 +197,7 @@ def campaign_signals(campaign: xr.Dataset) -> CampaignSignals:
 
 
 def blows(force: np.ndarray) -> int:
-    """Return how many blows of a hammer a force (time,) consists of, 0 where it does not: it is at
+    """Return how many blows of a hammer a force (time,) consists of, 0 if it does not: it is at
     rest but for few samples. Between blows a window may have set it to exact zeros.
     """
     if not np.isfinite(force).any():
@@ -240,7 +240,7 @@ def _factors(
 ) -> tuple[np.ndarray, dict[int, str]]:
     """Return (factors (count,), {index: sentence}).
 
-    The factor is 1 where the unit can not be used; the sentence says why.
+    The factor is 1 if the unit can not be used; the sentence says why.
     """
     factors, faults = np.ones(count), {}
     for index in range(count):
@@ -275,7 +275,7 @@ class Transfer:
 
 
 def transfer(signals: CampaignSignals, record: int) -> Transfer | None:
-    """Return the Transfer of a record; None where transfer_or_reason returns a reason."""
+    """Return the Transfer of a record; None if transfer_or_reason returns a reason."""
     found = transfer_or_reason(signals, record)
     return found if isinstance(found, Transfer) else None
 
@@ -362,7 +362,7 @@ def _excited(psd: np.ndarray) -> np.ndarray:
 def transfer_band(signals: CampaignSignals) -> tuple[float, float] | None:
     """Return (low, high) in Hz: first and last line of the transfer of the lowest usable record.
 
-    None where there is no such record.
+    None if there is no such record.
     """
     record = signals.lowest()
     spectra = transfer(signals, record) if record is not None else None

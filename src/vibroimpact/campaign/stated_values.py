@@ -23,7 +23,7 @@ KINDS = get_args(Kind)
 SPLITS = ("fit", "holdout")
 START_UPS = ("rest", "stationary")
 METRES = "is it in millimetres? Write metres"
-GAP = "give the radial clearance in m, NaN where there is none"
+GAP = "give the radial clearance in m, NaN if there is none"
 LONGEST_NAME = 200  # characters
 HIGHEST_RATE_HZ = 1.0e9
 
@@ -33,7 +33,7 @@ class Range:
     """The numbers that may stand in a variable.
 
     low, high: ends, both allowed.
-    unit: of the values, "" where they have none. Another one in the attribute `units` is a problem.
+    unit: of the values, "" if they have none. Another one in the attribute `units` is a problem.
     whole: only whole numbers.
     unknown: NaN stands for a value that is not known.
     remedy: what to write; too_high: the same for a finite number that is too large.
@@ -52,10 +52,10 @@ RANGES = {
     "gap": Range(0.0, 1.0, "m", GAP, unknown=True, too_high=METRES),
     "support_gap": Range(0.0, 1.0, "m", GAP, unknown=True, too_high=METRES),
     "channel_point": Range(
-        -1.0e4, 1.0e4, "m", "write metres, NaN where it is not known", unknown=True, too_high=METRES
+        -1.0e4, 1.0e4, "m", "write metres, NaN if it is not known", unknown=True, too_high=METRES
     ),
     "force_channel_point": Range(
-        -1.0e4, 1.0e4, "m", "write metres, NaN where it is not known", unknown=True, too_high=METRES
+        -1.0e4, 1.0e4, "m", "write metres, NaN if it is not known", unknown=True, too_high=METRES
     ),
     "channel_direction": Range(-1.0e4, 1.0e4, "", "write a unit vector", unknown=True),
     "force_channel_direction": Range(-1.0e4, 1.0e4, "", "write a unit vector", unknown=True),
@@ -177,7 +177,7 @@ def _attribute_problems(campaign: xr.Dataset) -> Iterator[str]:
         if period != 0.0 and not (SHORTEST_PERIOD <= period <= samples and period.is_integer()):
             yield (
                 f"period_samples = {_shown(attributes['period_samples'])} is no period: write the"
-                f" samples of a period of the force, {SHORTEST_PERIOD} to {samples}, or 0 where it"
+                f" samples of a period of the force, {SHORTEST_PERIOD} to {samples}, or 0 if it"
                 " does not repeat"
             )
     if "band_Hz" in attributes:

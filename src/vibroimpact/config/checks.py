@@ -124,7 +124,7 @@ def _every_step(record: RecordKeys, integration: Integration) -> Problems:
         yield (
             "integration.start_up_s",
             integration.start_up_s,
-            "must be 0 where every step is kept: the run starts at its initial state",
+            "must be 0 if every step is kept: the run starts at its initial state",
         )
 
 

@@ -49,7 +49,7 @@ class DeclaredKey:
     """A key of a section.
 
     holds: its type, in words; unit: "" for what is no number, "1" for a number without unit;
-    range: such as "> 0, ≤ 2"; default: as YAML writes it, None where the key is required; sections:
+    range: such as "> 0, ≤ 2"; default: as YAML writes it, None if the key is required; sections:
     the sections that its value consists of.
     """
 
@@ -68,7 +68,7 @@ class DeclaredSection:
     """A section at a place of the configuration.
 
     place: dotted key, "" for the top level; `[]` follows a key that holds a list of sections.
-    kind: the value of `kind` that selects it, None where there is no choice.
+    kind: the value of `kind` that selects it, None if there is no choice.
     meaning: what it is.
     """
 
@@ -232,7 +232,7 @@ def _several(words: str) -> str:
 
 
 def _default(field: FieldInfo) -> str | None:
-    """Return the default as YAML writes it, None where the key is required."""
+    """Return the default as YAML writes it, None if the key is required."""
     default = field.get_default()
     if default is PydanticUndefined:
         return None

@@ -126,7 +126,7 @@ class Measured(Forces):
     variable: str = Field(description="Name of the variable or column.", examples=["force"])
     sampling_frequency_Hz: Frequency_Hz | None = Field(
         None,
-        description="Sampling frequency. Needed only where the file does not give it, by an"
+        description="Sampling frequency. Needed only if the file does not give it, by an"
         " attribute, a variable Fs or a time column, whose unit counts: `time [ms]`.",
         examples=[2048.0],
     )
@@ -224,7 +224,7 @@ Excitation = Annotated[
 
 
 def highest_frequency(excitation: Excitation) -> float:
-    """Return the highest excited frequency in Hz, 0 where none is stated."""
+    """Return the highest excited frequency in Hz, 0 if none is stated."""
     source = excitation.signal if excitation.kind == "base_motion" else excitation
     if source.kind in ("band_limited", "turbulence"):
         return source.band_Hz[1]

@@ -142,7 +142,7 @@ class FluidOutside(FluidInside):
     @field_validator("viscosity_Pa_s")
     @classmethod
     def _viscosity(cls, value: float | None, info: ValidationInfo) -> float | None:
-        """Return the viscosity given, or that of the named fluid; 0 where nothing uses it."""
+        """Return the viscosity given, or that of the named fluid; 0 if nothing uses it."""
         if getattr(info.data.get("confinement"), "kind", None) == "coefficient":
             if value:
                 raise PydanticCustomError(

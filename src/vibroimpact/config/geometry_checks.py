@@ -72,7 +72,7 @@ def slender(structure: Tube) -> Problems:
 
 
 def centreline_of(structure: Tube) -> Centreline | None:
-    """Return the centreline, or None where its directions are a problem already reported."""
+    """Return the centreline, or None if its directions are a problem already reported."""
     return None if any(path_directions(structure)) else build_centreline(structure)
 
 

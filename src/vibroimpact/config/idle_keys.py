@@ -87,7 +87,7 @@ def _of_elements(config: Config) -> Iterator[str]:
 
 
 def _apart(element: Any, partner: Any) -> str:
-    """Return why an element is no partner of another's drag, "" where it is."""
+    """Return why an element is no partner of another's drag, "" if it is."""
     if (element.point, element.other_point) != (partner.point, partner.other_point):
         return f"acts at another point, '{partner.point}'"
     one, other = element.direction, partner.direction

@@ -62,7 +62,7 @@ def named_temperature(value: Any, info: ValidationInfo, properties: Any) -> Any:
 def given_or_named(value: Any, info: ValidationInfo, properties: Any) -> Any:
     """Return a value, or that of what is named at its temperature where it is None.
 
-    Raises PydanticCustomError where there is neither.
+    Raises PydanticCustomError if there is neither.
     """
     if value is not None or "name" not in info.data or "temperature_C" not in info.data:
         return value  # name or temperature are a problem of their own

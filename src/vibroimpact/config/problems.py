@@ -136,7 +136,7 @@ def _place(path: list) -> str:
 class _Place:
     """A place of a configuration.
 
-    path: keys and indices. value: what is there, None where nothing is.
+    path: keys and indices. value: what is there, None if nothing is.
     keys: {name: field} of those known beside the last part of the path.
     sections: that the value can be, or consists of.
     """

@@ -22,7 +22,7 @@ ANGLE = (
     " where normal gives it."
 )
 NORMAL = (
-    "{what}, as a vector in global axes across the tube, from the obstacle's centre; null where"
+    "{what}, as a vector in global axes across the tube, from the obstacle's centre; null if"
     " angle_deg gives it. On a bend it is known without knowing the transverse directions."
 )
 

@@ -87,7 +87,7 @@ def _valid_sections(data: dict[str, Any], invalid: set) -> dict[str, Any]:
 
 def _mended(data: dict[str, Any], errors: Sequence[Mapping[str, Any]]) -> dict[str, Any] | None:
     """Return a copy of the mapping without undeclared keys and with misspelled words put right, so
-    that the rest can be checked; None where there is nothing of the kind.
+    that the rest can be checked; None if there is nothing of the kind.
     """
     copied, mended = copy.deepcopy(data), False
     for error in errors:

@@ -19,7 +19,7 @@ def is_reserved(name: str) -> bool:
 
 
 def name_problem(name: str, study: str | None = None) -> str | None:
-    """Return why results can not go to results/NAME, as the end of a sentence; None where they can.
+    """Return why results can not go to results/NAME, as the end of a sentence; None if they can.
 
     study: name of the study of the same run, whose folder is taken.
     """

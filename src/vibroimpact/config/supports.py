@@ -125,7 +125,7 @@ class Support(Section):
     ] = Field(
         1.0,
         description="Factor of the gap of the case at this support, or a list with one factor per"
-        " contact point. Not used where gap_m is given.",
+        " contact point. Not used if gap_m is given.",
         examples=[1.1],
     )
     gap_m: Number | None = Field(
@@ -176,7 +176,7 @@ class Support(Section):
     stick_stiffness_ratio: Positive_factor = Field(
         1.0,
         description="Stiffness of the elastic stick spring that regularises friction, as a multiple"
-        " of the contact stiffness. Used where friction is not 0.",
+        " of the contact stiffness. Used if friction is not 0.",
         examples=[1.0],
     )
     profile: Profile = Field(Circular(kind="circular"), description="Shape of the obstacle.")
@@ -234,7 +234,7 @@ class LocalElement(Section):
     )
     stick_stiffness_N_per_m: Non_negative = Field(
         0.0,
-        description="Stiffness of the slider while it sticks. Used where slip_limit_N is not 0.",
+        description="Stiffness of the slider while it sticks. Used if slip_limit_N is not 0.",
         examples=[1.0e5],
     )
     saturation_stiffness_N_per_m: Number = Field(

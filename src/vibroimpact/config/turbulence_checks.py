@@ -104,7 +104,7 @@ def direction_of_flow(structure: Tube, flow: Any, section: str) -> Problems:
 
 
 def _centreline(structure: Tube) -> Centreline | None:
-    """Return the centreline, or None where its directions are a problem already reported."""
+    """Return the centreline, or None if its directions are a problem already reported."""
     return None if any(path_directions(structure)) else build_centreline(structure)
 
 

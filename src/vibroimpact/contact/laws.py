@@ -89,7 +89,7 @@ class ContactLaws:
 
     @property
     def plain(self) -> np.ndarray:
-        """Return (contact_point,) bool: True where a point has only the elastic circle."""
+        """Return (contact_point,) bool: True if a point has only the elastic circle."""
         special = np.isin(np.arange(len(self.gap)), self.land_point)
         for name in ("damping", "hunt_crossley", "hertz", "friction", "lobes"):
             special |= getattr(self, name) != 0.0

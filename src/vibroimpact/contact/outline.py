@@ -23,7 +23,7 @@ def radial_gap(profile: ConfigPart, gap_m: float, angle: np.ndarray) -> np.ndarr
     gap_m: its gap, m; between flat stops it may be 0 or negative.
     angle (angle,): direction of motion in rad from the first transverse direction to the second.
 
-    It is inf where no stop lies ahead. Source: the laws of config.supports, Circular, Planes and
+    It is inf if no stop lies ahead. Source: the laws of config.supports, Circular, Planes and
     Lobes.
     """
     turn = np.asarray(angle, dtype=float)

@@ -63,7 +63,7 @@ class Parameter:
 
     meaning: what it is, in words.
     low, high: bounds, as multiples of the size that `per` names in SCALES.
-    neutral: value in SI at which the effect vanishes, None where there is no such value.
+    neutral: value in SI at which the effect vanishes, None if there is no such value.
     log: whether it is searched in its logarithm.
     over: another parameter of the effect; this one is searched as a multiple of it, where their
         ratio sets what is seen.
@@ -92,7 +92,7 @@ class Effect:
     law: its equation, or the equation in words; p: indentation of a contact, u: displacement.
     source: where the law comes from.
     apply(values, parameters, location): the configuration with the effect; values are not changed;
-        parameters {name: value in SI}; None where the effect acts on the measurement.
+        parameters {name: value in SI}; None if the effect acts on the measurement.
     locations(values): names of the places where the effect may act.
     broken: keys of TESTS, the invariances that the effect breaks.
     aliases: ids of effects with a similar signature.

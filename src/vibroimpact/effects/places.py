@@ -82,7 +82,7 @@ def masses_and_springs(values: Values) -> list[str]:
 
 
 def stops(values: Values) -> list[str]:
-    """Return the named points at which a stop may be: of a structure that is no tube none where
+    """Return the named points at which a stop may be: of a structure that is no tube none if
     the force acts along z, across which supports at named points act.
     """
     if values["structure"]["kind"] not in TUBES:
@@ -116,7 +116,7 @@ def with_element(
 ) -> Values:
     """Return the configuration with another local element between a point and the ground.
 
-    laws: keys of an element. Unchanged where all are 0.
+    laws: keys of an element. Unchanged if all are 0.
     """
     if not any(laws.values()):
         return values
@@ -126,7 +126,7 @@ def with_element(
 
 def with_mass(values: Values, name: str, point: str, mass_kg: float) -> Values:
     """Return the configuration with another point mass, at a named point or a place between (see
-    between); unchanged where it is 0.
+    between); unchanged if it is 0.
     """
     if mass_kg == 0.0:
         return values
@@ -152,7 +152,7 @@ def arc_length_m(location: str) -> float | None:
 
 def turned_deg(location: str) -> float | None:
     """Return by how many degrees the direction of a location is turned from that of the force; None
-    where it is not.
+    if it is not.
     """
     return _numbers(location)[1]
 

@@ -16,7 +16,7 @@ class EquivalentError(Exception):
 
 @dataclass(frozen=True)
 class Span:
-    """A value with an interval; all NaN where it is not resolved."""
+    """A value with an interval; all NaN if it is not resolved."""
 
     value: float = np.nan
     low: float = np.nan
@@ -50,11 +50,11 @@ class GroupAnswer:
     bound: N/m, what k is below where it does not differ from 0; NaN otherwise.
     flag: what makes the values of the study doubtful, or "".
     anyway: the one method whose value was asked for where there is no recommended one, or "".
-    secant_k, secant_c: of the contact forces themselves, NaN where not known.
+    secant_k, secant_c: of the contact forces themselves, NaN if not known.
     methods: what each method says.
     how: where the values come from, a sentence.
     agreeing: the nearest range of load over gap, in N/m, over which the methods agree on k; of the
-        load in N where the model is not homogeneous; None where they agree nowhere.
+        load in N where the model is not homogeneous; None if they agree nowhere.
     """
 
     group: str

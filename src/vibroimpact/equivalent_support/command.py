@@ -97,7 +97,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command. Return 1 where there is no answer, or a k or c has no value and no bound."""
+    """Run the command. Return 1 if there is no answer, or a k or c has no value and no bound."""
     from vibroimpact.config.problems import ConfigError
     from vibroimpact.io.records import RecordError
 

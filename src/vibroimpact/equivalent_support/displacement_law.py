@@ -73,7 +73,7 @@ def held_tube(model: ModalModel, band_Hz: Sequence[float]) -> HeldTube:
 
     The displacement is the root mean square over the plates of that of the middle of each; the
     damping is modal. Its integral over the band is in closed form (band_power). Values are NaN
-    where a mode is overdamped.
+    if a mode is overdamped.
     """
     contact = max(np.bincount(model.support_of_point, model.contact_stiffness))
     decades = int(np.ceil(-np.log10(LOWEST_SHARE)))

@@ -83,7 +83,7 @@ def read_at(
 def _neighbours(
     rows: Sequence[dict[str, Any]], level: float, level_of: Callable[[dict[str, Any]], float]
 ) -> list[dict[str, Any]]:
-    """Return the row at a level, or the two that enclose it; none where it is outside."""
+    """Return the row at a level, or the two that enclose it; none if it is outside."""
     ordered = sorted(rows, key=level_of)
     same = [row for row in ordered if abs(level_of(row) / level - 1.0) <= SAME]
     below = [row for row in ordered if level_of(row) < level]

@@ -61,7 +61,7 @@ def outside_sentence(
     """Return the sentence for a case outside a study: the nearest case, and how to add this one.
 
     rows: of the study, with gap_m and load_rms_N.
-    load_rms_N: N RMS; None where the gap alone is missing.
+    load_rms_N: N RMS; None if the gap alone is missing.
     fixed_gap: whether the load counts at fixed gap, not load over gap.
     """
     path = configuration_of(study)
@@ -102,7 +102,7 @@ def _rounded_away(value: float, other: float) -> float:
 
 
 def configuration_of(study: str) -> str | None:
-    """Return the file, here or in config/, whose `study` is this one; None where there is none."""
+    """Return the file, here or in config/, whose `study` is this one; None if there is none."""
     for path in (*sorted(Path("config").glob("*.yaml")), *sorted(Path().glob("*.yaml"))):
         try:
             if read_yaml(path).get("study") == study:

@@ -46,7 +46,7 @@ class EquivalentLaw:
         return k, c
 
     def inside(self, level: float) -> bool:
-        """Return True where the law interpolates or the tube is free."""
+        """Return True if the law interpolates or the tube is free."""
         return bool(level <= self.level[-1])
 
 

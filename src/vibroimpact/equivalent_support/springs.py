@@ -63,7 +63,7 @@ def point_springs(
 
     Where k has only an upper bound there is no spring, and a note says so.
 
-    Raises EquivalentError where no k is resolved or bounded, or the structure has no positions in
+    Raises EquivalentError if no k is resolved or bounded, or the structure has no positions in
     space.
     """
     _require_positions(model)

@@ -43,7 +43,7 @@ def equivalent(
     load_rms_N: RMS of the force in N. gap_m: radial gap in m.
     model: reduced model of the study; that of its model.nc by default.
 
-    Raises EquivalentError where there is no answer; the message says what to do.
+    Raises EquivalentError if there is no answer; the message says what to do.
     """
     folder = study_folder(study)
     _require_positive(load_rms_N, gap_m)
@@ -278,7 +278,7 @@ def _reason(reading: Reading, name: str) -> str:
 def _bound(reading: Reading) -> float:
     """Return what k (N/m) is below at a level: the largest bound or value of the cases beside it.
 
-    NaN where k is resolved, or a case has neither.
+    NaN if k is resolved, or a case has neither.
     """
     if reading.span.resolved or not reading.rows:
         return np.nan

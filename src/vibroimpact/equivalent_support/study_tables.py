@@ -27,7 +27,7 @@ def summary_rows_of(folder: Path, direction: str) -> list[dict[str, Any]]:
     direction: that of the force, for a table without the column. A table without `group` holds one
     group, "all"; its one verdict is that on k.
 
-    Raises EquivalentError where the folder holds no such table, or it has no rows.
+    Raises EquivalentError if the folder holds no such table, or it has no rows.
     """
     path = folder / SUMMARY
     try:
@@ -44,7 +44,7 @@ def summary_rows_of(folder: Path, direction: str) -> list[dict[str, Any]]:
 
 
 def _require_own(path: Path, rows: list[dict[str, Any]]) -> None:
-    """Raise EquivalentError where a table is of another configuration than that of its folder.
+    """Raise EquivalentError if a table is of another configuration than that of its folder.
 
     Tables of before the column, and copies without a configuration beside them, are taken.
     """

@@ -133,7 +133,7 @@ def _connors(own: ConfigPart, diameter: float) -> FluidForce:
 
 
 def outside_fit(coupling: ConfigPart, velocity: float, mode_Hz: float, diameter: float) -> str:
-    """Return that the coefficients are extrapolated for a mode, "" where they are not.
+    """Return that the coefficients are extrapolated for a mode, "" if they are not.
 
     velocity: m/s. mode_Hz: frequency of the mode. diameter: m.
     """

@@ -30,7 +30,7 @@ TOLERANCE = 1.0e-3
 def fluid_fields(
     structure: TubeStructure, shapes: np.ndarray, omega: np.ndarray, config: ConfigPart
 ) -> dict[str, Any]:
-    """Return the fields fluid_shapes (mode, fluid_row) and fluid_laws of a ModalModel; none where
+    """Return the fields fluid_shapes (mode, fluid_row) and fluid_laws of a ModalModel; none if
     no flow acts.
 
     shapes: (dof, mode) in kg^-1/2.

@@ -26,7 +26,7 @@ class ForceFileError(ForeignFileError):
 class MeasuredForce:
     """A force as its file gives it.
 
-    values (sample,): N. rate: Hz. note: how the file was read, "" where as it stands.
+    values (sample,): N. rate: Hz. note: how the file was read, "" if as it stands.
     """
 
     values: np.ndarray
@@ -115,7 +115,7 @@ def _newtons(path: Path, variable: str, signal: Signal) -> np.ndarray:
 def require_lasting(
     path: str | Path, force: MeasuredForce, rate: float, start_up_s: float, needed_s: float
 ) -> None:
-    """Raise ForceFileError where a force is not that of a case.
+    """Raise ForceFileError if a force is not that of a case.
 
     rate: Hz, of the integration. start_up_s: s, before the record. needed_s: s, of both.
 

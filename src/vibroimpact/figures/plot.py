@@ -22,7 +22,7 @@ class Axis:
 
     column: of columns.COLUMNS.
     log: whether it is logarithmic.
-    low, high: limits, None where the data set them.
+    low, high: limits, None if the data set them.
     label: in the place of that of the column.
     names: of the places 0, 1, ... of bars and cells; the first is at the top.
     bare: whether it has neither label nor numbers, because a neighbour shows them.

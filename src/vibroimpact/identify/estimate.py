@@ -29,7 +29,7 @@ EDGE = 0.05  # of ln k: a value so near the edge of the range that was searched 
 class Estimate:
     """Equivalent support of one case by one method.
 
-    k, k_standard_error: N/m per support; NaN where unresolved.
+    k, k_standard_error: N/m per support; NaN if unresolved.
     c, c_standard_error: N s/m, on top of the modal damping; may be negative.
     frequency, damping_ratio: of the pole behind the estimate (Hz, undamped); NaN for none.
     quality: ok, weak or unresolved. It judges k with the error of the model included.
@@ -85,7 +85,7 @@ def grade(
     stiffness_range: Sequence[float],
     c_error_limit: float = np.inf,
 ) -> Estimate:
-    """Return the estimate with its quality; k and c become NaN where they are not resolved.
+    """Return the estimate with its quality; k and c become NaN if they are not resolved.
 
     model_error: standard error of k in N/m that an imperfect model causes.
     model_error_at_zero: the same near k = 0.

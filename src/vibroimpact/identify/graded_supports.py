@@ -35,10 +35,10 @@ C_ERROR, LOSS_ERROR = 0.5, 0.15
 class MethodResult:
     """The supports that a method found.
 
-    k, c: (direction,) N/m and N s/m; c is NaN where the method does not tell it.
+    k, c: (direction,) N/m and N s/m; c is NaN if the method does not tell it.
     covariance: (2 direction, 2 direction) of (ln k, c).
     by_frequency: (2 direction,) change of (ln k, c) per relative error of the model's frequencies;
-        None where the covariance holds the model's error.
+        None if the covariance holds the model's error.
     frequency, damping_ratio: of the pole, Hz and fraction; NaN for none.
     """
 
@@ -54,7 +54,7 @@ class MethodResult:
 def graded_supports(
     found: MethodResult, structure: SupportedStructure, search: SupportSearch
 ) -> list[Estimate]:
-    """Return the Estimate of each direction; k and c are NaN where they are not resolved."""
+    """Return the Estimate of each direction; k and c are NaN if they are not resolved."""
     directions = structure.directions
     count = len(directions)
     total = found.covariance

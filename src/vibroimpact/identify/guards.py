@@ -67,7 +67,7 @@ def guarded(
 def contact_fraction(record: xr.Dataset, group: str) -> float:
     """Return the share of time in contact of the support of a group that is touched most.
 
-    NaN where the record does not have it.
+    NaN if the record does not have it.
     """
     if "contact_fraction" not in record:
         return np.nan

@@ -38,7 +38,7 @@ class SupportsResult:
     """What the methods found in one case.
 
     peaks: {method: PeakFit or None}.
-    pole, shape, spectra, shapes: of the other methods, None where they found nothing.
+    pole, shape, spectra, shapes: of the other methods, None if they found nothing.
     """
 
     peaks: dict[str, PeakFit | None]
@@ -91,7 +91,7 @@ class SupportsCase:
         return SupportsResult(peaks, pole, shape, spectra, shapes)
 
     def by_spectra(self, shapes: ShapesFit | None) -> SpectraFit | None:
-        """Return the SpectraFit, or None where the force is not known or has no power in the band.
+        """Return the SpectraFit, or None if the force is not known or has no power in the band.
 
         The supports of the shapes are one more start: spectra alone have more false minima.
         """
@@ -114,7 +114,7 @@ class SupportsCase:
         return replace(found, curve=curve)
 
     def by_shapes(self) -> ShapesFit | None:
-        """Return the ShapesFit, or None where nothing along the line moves, or one point does."""
+        """Return the ShapesFit, or None if nothing along the line moves, or one point does."""
         tube, kernel = self.tube, self.tube.kernel
         if len(self.line) < 2 or not np.any(tube.model.line_shapes[tube.structure.modes]):
             return None

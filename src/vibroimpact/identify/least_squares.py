@@ -52,7 +52,7 @@ def minimise(
     """Return the Minimum of |error|² from a start (value,).
 
     evaluate(values): (error (residual,), Jacobian (residual, value)).
-    error_of(values): the error of a trial step, None where it fails; that of evaluate by default.
+    error_of(values): the error of a trial step, None if it fails; that of evaluate by default.
     passes, seconds: the most of both.
     settled: relative decrease of the cost in a pass at which it ends.
     told(pass, cost): called after each pass.
@@ -97,7 +97,7 @@ def differences(
 ) -> np.ndarray:
     """Return the Jacobian (residual, value) by forward differences with steps (value,).
 
-    error: that at values. A column is 0 where the trial fails.
+    error: that at values. A column is 0 if the trial fails.
     """
     slope = np.zeros((error.size, values.size))
     for index, step in enumerate(steps):

@@ -85,7 +85,7 @@ def operational_pole(
     duration_s: float = np.inf,
     tube_spectra: Callable | None = None,
 ) -> OperationalPole | None:
-    """Return the OperationalPole of segment spectra, or None where no pole is near the peak.
+    """Return the OperationalPole of segment spectra, or None if no pole is near the peak.
 
     outputs: (output, segment, frequency).
     references: indices of the outputs that serve as references.
@@ -94,7 +94,7 @@ def operational_pole(
     duration_s: length of the record.
     tube_spectra: function of (frequency, damping ratio) that returns (cross-spectra (output,
         reference, frequency) of the linear tube with about that first pole, its exact pole in
-        rad/s), or None where there is none; no model by default.
+        rad/s), or None if there is none; no model by default.
     """
     segments = outputs.shape[1]
     longest_lag_s = max(LAG_TIMES_WIDTH / peak[1], SHORTEST_LAG_S)

@@ -51,7 +51,7 @@ class PeakFit:
 def level_edges(frequency: float, damping_ratio: float, level: float) -> tuple[float, float]:
     """Return the two frequencies in Hz where 1/|D|² is `level` times below its maximum.
 
-    Exact for any damping ratio below 0.7. The lower edge is 0 where a wide curve never falls that
+    Exact for any damping ratio below 0.7. The lower edge is 0 if a wide curve never falls that
     low.
     """
     centre = 1.0 - 2.0 * damping_ratio**2
@@ -106,7 +106,7 @@ def fit_peak(
     averages: float = np.inf,
     segments: np.ndarray | None = None,
 ) -> PeakFit | None:
-    """Return the PeakFit at one level of a PSD, or None where the iteration diverges.
+    """Return the PeakFit at one level of a PSD, or None if the iteration diverges.
 
     frequency, psd: (frequency,) Hz and unit²/Hz.
     kernel: of the analysis window; the curve passes through it before it is compared.

@@ -39,7 +39,7 @@ def step_to_pole(
     covariance: np.ndarray,
     pole: tuple[float, float, np.ndarray],
 ) -> PoleStep | None:
-    """Return the PoleStep from supports k, c (direction,), or None where no such step is found.
+    """Return the PoleStep from supports k, c (direction,), or None if no such step is found.
 
     covariance: (2 direction, 2 direction) of (ln k, c); only its shape matters for the step.
     pole: frequency in Hz, damping ratio, and their covariance (2, 2).

@@ -242,7 +242,7 @@ class ReferenceTube:
         """Return the function of the fine index (fine,) that gives N (fine,).
 
         N is the PSD at the response sensor of the tube with this first pole, over the curve of that
-        pole alone. It is 1 where no support gives the pole.
+        pole alone. It is 1 if no support gives the pole.
         """
         support = equivalent_support(self.modes, frequency, damping_ratio)
         own = slice(self.sensors.response, self.sensors.response + 1)

@@ -14,7 +14,7 @@ Result = TypeVar("Result")
 
 
 def or_none(method: Callable[..., Result | None], *arguments: object) -> Result | None:
-    """Return what a method finds, None where its equations have no solution.
+    """Return what a method finds, None if its equations have no solution.
 
     Spectra without a resonance, of sensors that do not move or that move alike, make matrices
     singular.

@@ -19,7 +19,7 @@ class Linearisation:
 
     k: N/m per support, over all supports and directions that the force moves.
     work, square: (contact_point, 2) N m and m², whose sums over the points of a group give its k;
-        0 where the force moves nothing.
+        0 if the force moves nothing.
     frequency, damping_ratio: of the first mode (Hz) with the linearised contacts.
     settled: whether the iteration converged.
     """

@@ -98,7 +98,7 @@ class SupportsTube:
         return seen_band_Hz(self.force_band_Hz, self.bins)
 
     def force_psd(self, frequency: np.ndarray) -> np.ndarray:
-        """Return (frequency,) 1 where the force has power, else 0."""
+        """Return (frequency,) 1 if the force has power, else 0."""
         inside = (frequency >= self.force_band_Hz[0]) & (frequency <= self.force_band_Hz[1])
         return inside.astype(float)
 

@@ -43,7 +43,7 @@ def display_unit(unit: str, values: Iterable[float | None]) -> tuple[str, float]
     """Return (shown unit, shown units per SI unit) for values of a parameter.
 
     unit: the SI unit of the values.
-    values: SI values; NaN or None where there is none. The largest decides.
+    values: SI values; NaN or None if there is none. The largest decides.
     """
     given = np.abs(np.array([*values, 0.0], float))
     largest = given[np.isfinite(given)].max()

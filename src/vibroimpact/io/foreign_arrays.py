@@ -89,7 +89,7 @@ def _require_array(path: str | Path, member: zipfile.ZipInfo, file: Any) -> None
 
 
 def require_once(path: str | Path, names: list[str]) -> None:
-    """Raise ForeignFileError where a name stands twice."""
+    """Raise ForeignFileError if a name stands twice."""
     twice = [name for name, times in Counter(names).items() if times > 1]
     if twice:
         raise ForeignFileError(f"{path}: holds {twice[0]} twice: keep one of the two")

@@ -89,7 +89,7 @@ def verdict_origin(
 
     params: the configuration in plain values.
     campaign: the campaign file.
-    seed: of the random streams, None where nothing is drawn.
+    seed: of the random streams, None if nothing is drawn.
     """
     with open(campaign, "rb") as file:
         digest = hashlib.file_digest(file, "sha256").hexdigest()[:DIGEST_LENGTH]

@@ -418,7 +418,7 @@ def is_hdf5(path: str | Path) -> bool:
 
 
 def _inspect_hdf5(path: str | Path) -> None:
-    """Raise RecordError where an HDF5 file refers to another file, which would be read instead, or
+    """Raise RecordError if an HDF5 file refers to another file, which would be read instead, or
     where the type of its numbers is none that numpy has, as after damage: the values would differ.
     """
     import h5py

@@ -42,7 +42,7 @@ class Stopwatch(dict):
 
 
 def seconds_in(log: str) -> dict[str, float]:
-    """Return {name: CPU seconds} of a Stopwatch's last line in a log; empty where there is none."""
+    """Return {name: CPU seconds} of a Stopwatch's last line in a log; empty if there is none."""
     lines = LINE.findall(log)
     pairs = (part.rsplit(" ", 1) for part in lines[-1].split(", ")) if lines else ()
     return {name: float(seconds) for name, seconds in pairs}

@@ -82,7 +82,7 @@ def _flush(path: Path) -> None:
 
 
 def _reason(folder: Path, error: Exception) -> str | None:
-    """Return why a file of a folder could not be written and what to do; None where the error is
+    """Return why a file of a folder could not be written and what to do; None if the error is
     not of the folder.
     """
     number = error.errno if isinstance(error, OSError) else None
@@ -92,7 +92,7 @@ def _reason(folder: Path, error: Exception) -> str | None:
 
 
 def _error_of_writing(folder: Path) -> int | None:
-    """Return the error number of writing a little to a folder, None where it can be written."""
+    """Return the error number of writing a little to a folder, None if it can be written."""
     try:
         with tempfile.TemporaryFile(dir=_existing(folder)) as file:
             file.write(bytes(PROBE_BYTES))
@@ -120,7 +120,7 @@ def folder_problem(folder: str | Path, number: int) -> str | None:
 
 
 def problem_of(folder: str | Path) -> str | None:
-    """Return a sentence on a folder that cannot be written or is full, None where all is well."""
+    """Return a sentence on a folder that cannot be written or is full, None if all is well."""
     number = _error_of_writing(Path(folder))
     return None if number is None else folder_problem(folder, number)
 

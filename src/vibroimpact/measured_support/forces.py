@@ -103,7 +103,7 @@ def relative_psd(
 ) -> np.ndarray | None:
     """Return (frequency,) the PSD of the forces of a record over its mean in their band.
 
-    It is 1 outside the band. None where the forces are not known, or white within chance.
+    It is 1 outside the band. None if the forces are not known, or white within chance.
 
     frequency: (frequency,) Hz, the first lines of the spectra.
     """

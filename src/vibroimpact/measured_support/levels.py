@@ -45,7 +45,7 @@ def _alike(level: np.ndarray, records: Sequence[int] | np.ndarray, same: float) 
 def gaps_of_records(stated_m: np.ndarray, model_m: Sequence[float]) -> np.ndarray:
     """Return (record,) gaps in m: as stated, else the largest of the model's grid.
 
-    stated_m: (record,) m, NaN where a record states none.
+    stated_m: (record,) m, NaN if a record states none.
     model_m: gaps of the model's grid.
     """
     known = np.isfinite(stated_m) & (stated_m > 0.0)

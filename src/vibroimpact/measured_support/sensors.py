@@ -45,7 +45,7 @@ def measured_model(
     The sensors are those channels that measure a motion which the force causes, from one end of
     the tube to the other. They are also the points of the shape line.
 
-    Raises CampaignError where there is none.
+    Raises CampaignError if there is none.
     """
     model, own_drive = with_own_drive(config, campaign, signals)
     force = known_force(config, signals, model, own_drive)

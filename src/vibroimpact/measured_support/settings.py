@@ -94,7 +94,7 @@ def _with_sensors(config, signals, model, names, used) -> Identification:
 
 
 def _nearest(config, signals, names, used, point) -> str | None:
-    """Return the channel at a named point of the model, None where there is none."""
+    """Return the channel at a named point of the model, None if there is none."""
     if config.identification is None:
         return None
     away = np.linalg.norm(signals.points[used] - np.array(config.points[point]), axis=1)

@@ -55,7 +55,7 @@ def model_accuracy(config: ConfigPart) -> list[dict[str, Any]]:
 
     condition: "free", or "on supports": contacts and local elements are springs of their stiffness.
     mode: from 1, in ascending frequency, those of rigid motion included.
-    full_Hz, reduced_Hz: of the full and of the reduced model; NaN where the basis has fewer modes.
+    full_Hz, reduced_Hz: of the full and of the reduced model; NaN if the basis has fewer modes.
     basis_error: reduced over full, minus 1; 0 for rigid motion that is rigid in both.
     halved_mesh_Hz: of the full model with each element cut in two; NaN for matrices.
     mesh_error: full over exact, minus 1; the exact one is extrapolated from the two meshes.
@@ -124,7 +124,7 @@ def mesh_warnings(rows: Iterable[dict[str, Any]]) -> list[str]:
 
 
 def _lowest_elastic(omega: np.ndarray) -> float:
-    """Return the lowest rad/s above 0 of (mode,) rad/s; 1 where there is none."""
+    """Return the lowest rad/s above 0 of (mode,) rad/s; 1 if there is none."""
     return float(omega[omega > 0.0].min(initial=np.inf)) if np.any(omega > 0.0) else 1.0
 
 
@@ -205,7 +205,7 @@ def _rows(
 
 
 def _relative(value: np.ndarray, reference: np.ndarray) -> np.ndarray:
-    """Return value over reference, minus 1; 0 where both are 0, infinite where one is."""
+    """Return value over reference, minus 1; 0 if both are 0, infinite where one is."""
     out = np.where(value == reference, 0.0, np.inf)
     both = (value != 0.0) & (reference != 0.0)
     out[both] = value[both] / reference[both] - 1.0

@@ -451,7 +451,7 @@ def _sensor_fields(
 def _line_fields(
     structure: Any, shapes: np.ndarray, config: ConfigPart, wanted: bool
 ) -> dict[str, Any]:
-    """Return the fields of the shape line; empty where it is not wanted.
+    """Return the fields of the shape line; empty if it is not wanted.
 
     Its points are evenly spaced in arc length between the ends of the tube, ends excluded.
     """
@@ -474,7 +474,7 @@ def _line_fields(
 def _stress_fields(
     structure: Any, shapes: np.ndarray, config: ConfigPart, wanted: bool
 ) -> dict[str, Any]:
-    """Return stress_shapes and section_names; empty where they are not wanted.
+    """Return stress_shapes and section_names; empty if they are not wanted.
 
     Sections are at both ends of the tube, at the edges and middle of each support, at the drive
     point and at the sensors. Sections at the same place appear once, under the first name.

@@ -112,7 +112,7 @@ def uncoupled_groups(
 def rigid_body_shift(stiffness: np.ndarray, mass: np.ndarray) -> float:
     """Return the mass shift in rad²/s² that makes stiffness + shift mass positive definite.
 
-    It is 0 where the stiffness is positive definite to working precision. Otherwise it is the least
+    It is 0 if the stiffness is positive definite to working precision. Otherwise it is the least
     one that raises the lowest eigenvalue, scaled to a unit diagonal, to DEFINITE_AT: a shift sized
     by the highest frequency would swallow bending modes where an element is short.
     """

@@ -103,7 +103,7 @@ def discrepancy_page(
 
 
 def _chance(value):
-    """Return a p-value as text, None where there is none."""
+    """Return a p-value as text, None if there is none."""
     return None if value is None else probability_text(value)
 
 

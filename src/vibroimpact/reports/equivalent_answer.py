@@ -23,7 +23,7 @@ UNITS = {"k": "N_per_m", "c": "N_s_per_m"}
 class Value:
     """A recommended value with its interval over seeds.
 
-    value, low, high: N/m or N s/m; NaN where not resolved.
+    value, low, high: N/m or N s/m; NaN if not resolved.
     agreement: one of method_agreement.VERDICTS.
     reason: why it is not resolved, or what else is to be known; empty for nothing.
     methods: medians of the compared methods that resolve it.
@@ -54,7 +54,7 @@ class Answer:
     """The equivalent support of one gap (m), load (N RMS), group of supports and direction.
 
     bound: N/m, what k is below where it does not differ from 0; NaN otherwise.
-    touching: share of time in contact; NaN where not known.
+    touching: share of time in contact; NaN if not known.
     """
 
     gap_m: float
@@ -97,7 +97,7 @@ def answers(
     Directions that the force does not move are left out: see unmoved.
 
     summary: rows of consistency_summary.csv.
-    equivalent: rows of equivalent.csv; None where there is no such table, which is then made of the
+    equivalent: rows of equivalent.csv; None if there is no such table, which is then made of the
     summary.
     direction: that of rows without, such as y.
     """
@@ -119,7 +119,7 @@ def _place(row: dict) -> tuple[float, float, str, str]:
 def unmoved(equivalent: Sequence[dict] | None) -> list[tuple[str, str]]:
     """Return (group, direction) of the supports that the force does not move, each once.
 
-    equivalent: rows of equivalent.csv; None where there is no such table.
+    equivalent: rows of equivalent.csv; None if there is no such table.
     """
     still = [row for row in equivalent or () if row["reason_k"] == NOT_MOVED]
     return list(dict.fromkeys((str(row["group"]), str(row["direction"])) for row in still))

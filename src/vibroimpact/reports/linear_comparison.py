@@ -78,7 +78,7 @@ def linear_comparison(
 ) -> tuple[list[dict], list[dict]]:
     """Return (modes, checks) of measured responses per force channel 0 beside the linear model.
 
-    modes: a row of COLUMNS for each mode that is measured, NaN where the model has none near.
+    modes: a row of COLUMNS for each mode that is measured, NaN if the model has none near.
     checks: rows of compare_with_model.
     campaign: where the channels and the force are. spectra: of its lowest record.
     """
@@ -115,7 +115,7 @@ def _modes(model: ModalModel, spectra: Transfer, s: np.ndarray, orders: np.ndarr
 
 def _partner(model: ModalModel, place: float, shape: np.ndarray) -> Sequence[float]:
     """Return (Hz, damping ratio, relative difference, MAC) of the mode of the model that is most
-    like a measured one, of a frequency in Hz and a shape (channel,); NaN where none is near.
+    like a measured one, of a frequency in Hz and a shape (channel,); NaN if none is near.
     """
     frequency = model.omega / (2.0 * np.pi)
     near = np.flatnonzero(np.abs(frequency - place) < NEAR * place)

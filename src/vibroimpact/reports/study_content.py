@@ -45,7 +45,7 @@ class Provenance:
     configuration: the configuration as it ran, as YAML.
     version: of the library.
     stages: {stage: attributes of a file that it wrote}.
-    timing: rows of study.timing; empty where the jobs left no benchmark files.
+    timing: rows of study.timing; empty if the jobs left no benchmark files.
     """
 
     configuration: str
@@ -156,7 +156,7 @@ class StudyContent:
         ]
 
     def at_gap(self, gap_m: float) -> str:
-        """Return " at a gap of ... mm", empty where the gap of a case means nothing."""
+        """Return " at a gap of ... mm", empty if the gap of a case means nothing."""
         return "" if has_own_gaps(self.config) else f" at a gap of {digits(1e3 * gap_m)} mm"
 
     def loads_in_tables(self) -> list[float]:

@@ -32,7 +32,7 @@ SEVERAL = "all"  # the place of a largest value over supports, sections or the w
 
 
 class Spread(NamedTuple):
-    """Median, smallest and largest value over seeds, SI; NaN where there is none."""
+    """Median, smallest and largest value over seeds, SI; NaN if there is none."""
 
     median: float
     low: float

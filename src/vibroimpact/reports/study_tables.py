@@ -134,7 +134,7 @@ def reason_table(
 def _kind(row: Answer, quantity: str) -> tuple[str, str, str] | None:
     """Return (k, c or both, agreement, reason without its numbers), by which loads share a row.
 
-    None where there is nothing to tell, or k tells it.
+    None if there is nothing to tell, or k tells it.
     """
     value: Value = getattr(row, quantity)
     both = not row.k.resolved and not row.c.resolved and row.k.reason == row.c.reason

@@ -60,7 +60,7 @@ def verdict_sentence(verdict: Verdict) -> str:
 
 
 def _how_sure(verdict):
-    """Return the probability of what a verdict says, as a sentence; empty where it is not known."""
+    """Return the probability of what a verdict says, as a sentence; empty if it is not known."""
     ids = effects_in_words(sorted(effect.id for effect in verdict.effects))
     wanted = NOTHING if verdict.verdict == "none" else ids
     rows = [row for row in explanations_of(verdict) if row.words == wanted]
@@ -124,7 +124,7 @@ def _with_parameters(effect):
 
 
 def withdrawn_sentence(verdict: Verdict) -> str:
-    """Return what was tried and is not offered, empty where that is nothing."""
+    """Return what was tried and is not offered, empty if that is nothing."""
     if verdict.withdrawn is None:
         return ""
     misfit, tried = (
@@ -144,7 +144,7 @@ def withdrawn_sentence(verdict: Verdict) -> str:
 
 
 def where_it_shows(verdict: Verdict) -> str:
-    """Return what the table of regions means, or why there is none; empty where none was sought."""
+    """Return what the table of regions means, or why there is none; empty if none was sought."""
     if verdict.regions:
         return (
             f"{len(verdict.regions)} bands differ by more than chance, the strongest first. z"
@@ -190,7 +190,7 @@ def judgement(verdict: Verdict, row: dict, first: bool) -> str:
 
 
 def next_steps(verdict: Verdict, model: str) -> list[dict]:
-    """Return [{words, command}] of what to do next; command: None where there is none.
+    """Return [{words, command}] of what to do next; command: None if there is none.
 
     model: path of the completed model.
     """
@@ -230,7 +230,7 @@ def _step(words, target="", campaign="", configfile=""):
 
 
 def unit_text(unit: str | None) -> str:
-    """Return a unit after a space, nothing where there is none."""
+    """Return a unit after a space, nothing if there is none."""
     return "" if unit in ("1", "", "-", None) else f" {unit}"
 
 

@@ -49,7 +49,7 @@ class FluidStretch:
 
 
 def fluid_stretches(structure: ConfigPart, line: Centreline) -> list[FluidStretch]:
-    """Return the FluidStretches of a tube; none where its configuration has no fluid.
+    """Return the FluidStretches of a tube; none if its configuration has no fluid.
 
     structure: section of the configuration.
 
@@ -80,7 +80,7 @@ def fluid_stretches(structure: ConfigPart, line: Centreline) -> list[FluidStretc
 def added_mass_coefficients(confinement: ConfigPart, section: ConfigPart) -> tuple[float, float]:
     """Return the added mass along the two axes of a section over the mass of fluid displaced.
 
-    A round section: ((De/D)² + 1) / ((De/D)² - 1), 1 where nothing confines the fluid. Source:
+    A round section: ((De/D)² + 1) / ((De/D)² - 1), 1 if nothing confines the fluid. Source:
     Rogers, Taylor and Pettigrew (1984).
     """
     if confinement.kind == "coefficient":

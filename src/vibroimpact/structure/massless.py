@@ -67,7 +67,7 @@ class Condensed:
 def condense_massless(
     mass: sparse.csr_array, stiffness: sparse.csr_array, named: Sequence[int]
 ) -> Condensed | None:
-    """Return the Condensed structure; None where every direction has mass, where there are too many
+    """Return the Condensed structure; None if every direction has mass, where there are too many
     degrees of freedom, or where the mass, or the stiffness of a direction without mass, is
     negative, which is refused later.
 

@@ -59,7 +59,7 @@ def read_matrix(path: str | Path, name: str, op4_set: str | None = None) -> spar
 
 
 def _real(path: Path, name: str, matrix: Any) -> sparse.csr_array:
-    """Return a matrix as real numbers, sparse. Raises MatrixFileError where it is not square, holds
+    """Return a matrix as real numbers, sparse. Raises MatrixFileError if it is not square, holds
     other things than finite real numbers, or refers to rows that it does not have.
     """
     if sparse.issparse(matrix):
@@ -149,7 +149,7 @@ def _choose_op4(path: Path, names: list[str], name: str, op4_set: str | None) ->
     """Return the place of the wanted matrix in an OP4 file; names there are in lower case.
 
     In order: of the wanted set, mass (or stiffness, damping), its letter, one of Nastran's names
-    (mgg, maa, ...), the only matrix of the file. Raises MatrixFileError where two fit equally.
+    (mgg, maa, ...), the only matrix of the file. Raises MatrixFileError if two fit equally.
     """
     letters = OP4_LETTERS[name]
     plain = [wanted for wanted in (name[:OP4_NAME_LENGTH], *letters) if wanted in names]

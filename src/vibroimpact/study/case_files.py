@@ -40,7 +40,7 @@ def read_estimates(
     """Return the rows of each table of estimates, one per case.
 
     groups: of the supports, as in the configuration.
-    Raises RecordError where a table is not of its case, or has not one row for each method, group
+    Raises RecordError if a table is not of its case, or has not one row for each method, group
     of supports and direction: medians over fewer would look like results.
     """
     directions, _ = reached_supports(model, groups)

@@ -121,7 +121,7 @@ def _empty(place: tuple, reason: str) -> dict:
 
 
 def recommended(spans: Mapping[str, Span], agreement: str) -> Span:
-    """Return (median of the methods' medians, smallest, largest value), NaN where there is none."""
+    """Return (median of the methods' medians, smallest, largest value), NaN if there is none."""
     if agreement in ("unresolved", "differ"):
         return NO_SPAN
     found = np.array([span for span in spans.values() if np.isfinite(span[0])])

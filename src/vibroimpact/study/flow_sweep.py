@@ -60,7 +60,7 @@ class FlowRun:
 
 @dataclass(frozen=True)
 class Onset:
-    """Velocities in m/s at one load and gap, NaN where there is none in the range.
+    """Velocities in m/s at one load and gap, NaN if there is none in the range.
 
     k, c: of a support without flow, the mean over the supports. open, equivalent, closed: critical
     velocities of the linear tube with no supports, with k and c of each, and with contact
@@ -255,7 +255,7 @@ def _onset(tube: ModelInFlow, runs: list[FlowRun], still: list[xr.Dataset]) -> O
 
 def onset_of(runs: Sequence[FlowRun]) -> float:
     """Return the velocity in m/s at which the response is ONSET times that without flow: the median
-    over seeds, interpolated; NaN where it never is.
+    over seeds, interpolated; NaN if it never is.
     """
     velocities = sorted({run.velocity_m_per_s for run in runs})
     median = np.array(

@@ -51,7 +51,7 @@ def _short(value: float) -> str:
 
 
 def flag_sentences(rows: Sequence[dict], table: str = "equivalent.csv") -> list[str]:
-    """Return one sentence on the cases that have a flag in a table, none where there are none.
+    """Return one sentence on the cases that have a flag in a table, none if there are none.
 
     rows: of equivalent.csv, or of statistics.csv, which has many per case.
     """

@@ -96,7 +96,7 @@ def identify_support(
 ) -> SupportEstimates:
     """Return the equivalent support of one case by every method: k (N/m) and c (N s/m) per support.
 
-    They are NaN where a method can not resolve the support.
+    They are NaN if a method can not resolve the support.
 
     config: a Config, or the path of a file.
     record: of simulate_case, or read from results/<study>/records.

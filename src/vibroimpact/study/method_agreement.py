@@ -85,7 +85,7 @@ def summary_rows(rows: list[dict]) -> list[dict]:
     would be a chance selection.
     ratio: k_median over the median of the k_median of the three compared methods.
     verdict_k, verdict_c: of the compared methods, see verdict; empty in the rows of all others.
-    reason: why k or c is not resolved, or k is weak; empty where both are, or where the method
+    reason: why k or c is not resolved, or k is weak; empty if both are, or where the method
         never tells c.
     flag: what makes the values of one or more seeds doubtful, and in how many, see identify.guards.
     k_bound: N/m, that k is below where it does not differ from 0, the largest over seeds.
@@ -135,7 +135,7 @@ def compared_spans(methods: Mapping[str, dict], quantity: str, several: bool) ->
 
     methods: {method: row of consistency_summary.csv} of one place.
     several: whether the supports are identified each for itself. The pole then only corrects what
-        the broadband comparison found, and tells nothing where that does not resolve k.
+        the broadband comparison found, and tells nothing if that does not resolve k.
     """
     spans = {
         name: tuple(
@@ -191,7 +191,7 @@ def _by_place(rows: list[dict]) -> dict[tuple, dict[str, list[dict]]]:
 def _span(cases: list[dict], column: str) -> Span:
     """Return (median, smallest, largest) of the resolved values without a flag.
 
-    NaN where less than half of the cases have one.
+    NaN if less than half of the cases have one.
     """
     values = np.array([np.nan if row["flag"] else row[column] for row in cases], dtype=float)
     resolved = values[np.isfinite(values)]

@@ -40,7 +40,7 @@ def own_records(folder: Path, config: Config) -> list[Path]:
 
     Files of cases that the grid does not have are left out.
 
-    config: that of the folder. Raises RecordError where a record is missing, or is of another
+    config: that of the folder. Raises RecordError if a record is missing, or is of another
     configuration.
     """
     paths = [folder / "records" / f"{case.id}.nc" for case in all_cases(config.grid)]

@@ -41,10 +41,10 @@ def bound_text(bound: float, touching: float) -> str:
 def stiffness_reason(
     methods: Mapping[str, dict], spans: Mapping[str, Span], agreement: str, bound: float
 ) -> str:
-    """Return why there is no k, or what is to be known of it; empty where all methods agree.
+    """Return why there is no k, or what is to be known of it; empty if all methods agree.
 
     methods: {method: row of consistency_summary.csv}; spans: of the compared ones.
-    bound: N/m, what k is below; NaN where that is not known.
+    bound: N/m, what k is below; NaN if that is not known.
     """
     if np.isfinite(bound):
         touching = next(iter(methods.values())).get("contact_fraction", np.nan)
@@ -53,7 +53,7 @@ def stiffness_reason(
 
 
 def damping_reason(methods: Mapping[str, dict], spans: Mapping[str, Span], agreement: str) -> str:
-    """Return why there is no c, or what is to be known of it; empty where both methods agree."""
+    """Return why there is no c, or what is to be known of it; empty if both methods agree."""
     return _reason("c", methods, spans, agreement)
 
 

@@ -22,7 +22,7 @@ def write_run_files(
 ) -> None:
     """Write config.yaml and provenance.json of a run into a folder of results.
 
-    values: the checked configuration with all defaults, None where the run has none.
+    values: the checked configuration with all defaults, None if the run has none.
     command: program and arguments of the run.
     """
     folder = Path(folder)

@@ -13,7 +13,7 @@ def statistics_rows(record: xr.Dataset) -> list[dict]:
 
     Keys of a row: load_rms_N, gap_m, seed, quantity, of (name of the support, section or element;
     empty for the whole case), value, unit, flag (why the values of this case are of no use; empty
-    where its energy balance closes).
+    if its energy balance closes).
     """
     case = {key: record.attrs[key] for key in CASE}
     flag = energy_flag(record)

@@ -72,7 +72,7 @@ def files_named(value: Any, folder: Path) -> Iterator[Path]:
 
 
 def _refuse_what_exists(folder: Path) -> None:
-    """Raise NewStudyError where a path is a file or a folder that holds something."""
+    """Raise NewStudyError if a path is a file or a folder that holds something."""
     if os.path.exists(folder) and not os.path.isdir(folder):
         raise NewStudyError(f"{folder} is a file: give a folder that does not exist yet")
     if os.path.isdir(folder) and (entry := next(folder.iterdir(), None)):

@@ -12,7 +12,7 @@ def shared_folder() -> Path:
 
     It is vibroimpact/share of an installed package, and the repository of a checkout or of an
     editable installation.
-    Raises FileNotFoundError where there is neither; the message tells how to install.
+    Raises FileNotFoundError if there is neither; the message tells how to install.
     """
     places = (PACKAGE / "share", PACKAGE.parents[1])
     for folder in places:

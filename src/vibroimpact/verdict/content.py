@@ -72,7 +72,7 @@ class Estimate(_Content):
     """A parameter of an effect, with its 90 % interval."""
 
     value: Number | None = Field(description="Best estimate.")
-    unit: str = Field(description="Unit of the three numbers; 1 where there is none.")
+    unit: str = Field(description="Unit of the three numbers; 1 if there is none.")
     low: Number | None = Field(description="Lower end of the 90 % interval.")
     high: Number | None = Field(description="Upper end of the 90 % interval.")
 
@@ -96,7 +96,7 @@ class RankedCandidate(_Content):
 
     ids: list[str] = Field(description="Ids of the effects that were tried together.")
     heldout_score: Number | None = Field(
-        description="Gain on held-out records; null where the candidate was screened only."
+        description="Gain on held-out records; null if the candidate was screened only."
     )
     closed_fraction: Number | None = Field(description="Share of the excess misfit it closes.")
     location: str | None = Field(default=None, description="Where the effects act.")
@@ -114,7 +114,7 @@ class Region(_Content):
     load_rms_N: Number | None = Field(
         description="RMS of the first force channel, N; in load_unit on a moving base."
     )
-    gap_m: Number | None = Field(description="Radial clearance, m; null where there is none.")
+    gap_m: Number | None = Field(description="Radial clearance, m; null if there is none.")
     channel: str = Field(description="Name of the response channel.")
     discrepancy_dB: Number | None = Field(
         description="10 log10 of measured over simulated power in the band."
@@ -138,7 +138,7 @@ class Misfit(_Content):
 
 
 class MisfitBySplit(_Content):
-    """Misfit of the fitted and of the held-out records; null where a split has none."""
+    """Misfit of the fitted and of the held-out records; null if a split has none."""
 
     fit: Misfit | None
     holdout: Misfit | None
@@ -236,7 +236,7 @@ class Verdict(_Content):
     @model_validator(mode="after")
     def _consistent(self) -> Self:
         if self.effects and self.verdict not in WITH_EFFECTS:
-            raise ValueError(f"effects must be empty where the verdict is {self.verdict}")
+            raise ValueError(f"effects must be empty if the verdict is {self.verdict}")
         if bool(self.ambiguity_set) != (self.verdict in WITH_AMBIGUITY_SET):
             wanted = "filled" if self.verdict in WITH_AMBIGUITY_SET else "empty"
             raise ValueError(f"ambiguity_set must be {wanted} where the verdict is {self.verdict}")
@@ -265,7 +265,7 @@ def not_testable(
     cost: dict[str, Any] | None = None,
 ) -> Verdict:
     """Return the verdict on a campaign that can not be judged; checks: rows of CheckResult, cost:
-    values of Cost, nothing where None.
+    values of Cost, nothing if None.
     """
     cost = cost or {"cpu_seconds": 0.0, "simulations": 0, "by_stage": {}}
     return Verdict.from_values(
@@ -299,7 +299,7 @@ def write_verdict(verdict: Verdict, path: str | Path) -> None:
 
 
 def read_verdict(path: str | Path) -> Verdict:
-    """Return the verdict of a file. Raises RecordError where there is none."""
+    """Return the verdict of a file. Raises RecordError if there is none."""
     try:
         return Verdict.model_validate(json.loads(read_text(path)))
     except (json.JSONDecodeError, ValidationError) as error:

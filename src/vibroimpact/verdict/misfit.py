@@ -20,7 +20,7 @@ def excess(distance: float, floor: float) -> float:
 def closed_fraction(
     before: float, after: float, floor: float, floor_before: float | None = None
 ) -> float | None:
-    """Return 1 - excess after / excess before of distances in dB; None where the excess before is
+    """Return 1 - excess after / excess before of distances in dB; None if the excess before is
     negligible: then the records tell nothing of what is added.
 
     floor, floor_before: dB, of the model after and before, the same where None.

@@ -120,7 +120,7 @@ def contradictions(measured: CampaignSignals) -> Found:
 
 
 def _gains(measured: CampaignSignals, record: int) -> Gains | None:
-    """Return the Gains of a record, None where its spectra can not be averaged."""
+    """Return the Gains of a record, None if its spectra can not be averaged."""
     force, finite = measured.force[record][0], measured.finite(record)
     if not (np.isfinite(force).all() and force.any() and finite.any()):
         return None
@@ -185,7 +185,7 @@ class _Pair:
         return found
 
     def apart(self, channel: int) -> float:
-        """Return the factor of a channel over that of the others, in logarithm: 0 where another one
+        """Return the factor of a channel over that of the others, in logarithm: 0 if another one
         has changed more, or there is none.
         """
         others = [factor for each, factor in self.factors.items() if each != channel]

@@ -2,7 +2,7 @@
 
 level is "pass"; "warn", where a signal or record is left out or to be read with care; "refuse",
 where no verdict is possible; or "not checked", with the reason. record and channel are names, None
-where a row is about all of them.
+if a row is about all of them.
 A file is refused only where what remains holds no measured force, no response, or no two levels.
 """
 

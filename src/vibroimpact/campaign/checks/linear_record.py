@@ -129,7 +129,7 @@ def _explains(without: float, with_it: float) -> bool:
 def alignment(signals: CampaignSignals) -> np.ndarray:
     """Return (channel,) |cosine| between the direction of a channel and that of force channel 0.
 
-    NaN where either direction is zero.
+    NaN if either direction is zero.
     """
     force = signals.force_directions[0]
     lengths = np.linalg.norm(signals.directions, axis=1) * np.linalg.norm(force)

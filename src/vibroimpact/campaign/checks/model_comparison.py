@@ -45,7 +45,7 @@ def band_levels_dB(frequency: np.ndarray, h1: np.ndarray, weights: np.ndarray) -
     frequency (line,): Hz.
     h1, weights (channel, line).
 
-    NaN where a band holds no line.
+    NaN if a band holds no line.
     """
     place = _bands(frequency)
     power = np.abs(h1) ** 2 * weights

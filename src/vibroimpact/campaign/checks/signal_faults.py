@@ -28,7 +28,7 @@ START_UP_SHARE, START_UP_S = 0.1, 5.0  # start from rest: share of the record, a
 def missing_samples(signal: np.ndarray) -> tuple[int, int] | None:
     """Return (number of samples that are not finite, index of the first) of a signal (time,).
 
-    None where all are finite.
+    None if all are finite.
     """
     holes = np.flatnonzero(~np.isfinite(signal))
     return (holes.size, int(holes[0])) if holes.size else None
@@ -157,7 +157,7 @@ def level_trend(
     starts_at_rest: the start-up is left out.
 
     The level is the mean in dB over 6 bands within band_Hz, in segments of 2 s. A straight line is
-    fitted; its standard error allows for the correlation of neighbouring segments. None where the
+    fitted; its standard error allows for the correlation of neighbouring segments. None if the
     record is too short.
     """
     begin = int(min(START_UP_SHARE * signal.size, START_UP_S * rate)) if starts_at_rest else 0

@@ -22,7 +22,7 @@ MOST_SI, MOST_STORED, LEAST_STORED = 1e12, 1e30, 1e-30
 class Cut:
     """A record: its name and the samples that it takes of each of its signals.
 
-    start: s, when the last of its signals begins; None where no file has a time.
+    start: s, when the last of its signals begins; None if no file has a time.
     rate: Hz.
     first, length: samples, from `start`.
     stated: whether to_s of the sidecar gives its end, not the signal that ends first.

@@ -148,7 +148,7 @@ def _unit(sensor: Sensor, signals: list[Signal], kind: str, measured: Measured) 
 
 
 def _unit_vector(direction, place, problems):
-    """Return (3,) a direction of the sidecar as a unit vector, None where none is given."""
+    """Return (3,) a direction of the sidecar as a unit vector, None if none is given."""
     if direction is None:
         return None
     vector = np.array(DIRECTIONS[direction] if isinstance(direction, str) else direction, float)

@@ -66,7 +66,7 @@ Repeat = Annotated[
 ]
 PeriodSamples = Annotated[
     Whole,
-    Range("samples of a period, 0 where the force is not periodic", at_least=0, at_most=10**9),
+    Range("samples of a period, 0 if the force is not periodic", at_least=0, at_most=10**9),
 ]
 TransientPeriods = Annotated[
     Whole, Range("periods before the steady state", at_least=0, at_most=10**6)
@@ -170,7 +170,7 @@ def read_sidecar(path: str | Path) -> Sidecar:
 
 
 def _without(data: dict[str, Any], errors: Sequence[Mapping[str, Any]]) -> Sidecar | None:
-    """Return the Sidecar without the keys that are wrong, to find what else is; None where more is
+    """Return the Sidecar without the keys that are wrong, to find what else is; None if more is
     wrong than keys that may be left out.
     """
     rest = copy.deepcopy(data)

@@ -225,7 +225,7 @@ def _text(value):
 
 
 def unit_of(data: dict, type_: int, units: dict | None) -> tuple[str, str]:
-    """Return (unit as UDUNITS text, where it is stated); "" where the file does not state it.
+    """Return (unit as UDUNITS text, where it is stated); "" if the file does not state it.
 
     It is the axis label, else dataset 164 with the type of the ordinate.
     """

@@ -38,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command. Return 1 where nothing was written, or something was left out."""
+    """Run the command. Return 1 if nothing was written, or something was left out."""
     from vibroimpact.config.problems import ConfigError
     from vibroimpact.config.reading import load_config
     from vibroimpact.io.records import RecordError, write_text

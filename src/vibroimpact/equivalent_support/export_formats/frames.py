@@ -38,7 +38,7 @@ def head(
 def global_axes(directions: np.ndarray) -> tuple[int, int] | None:
     """Return the global axes (0 to 2) that two directions (2, 3) are, up to the sign.
 
-    None where they are not along the axes.
+    None if they are not along the axes.
     """
     axes = np.abs(directions)
     first, second = (int(np.argmax(axis)) for axis in axes)

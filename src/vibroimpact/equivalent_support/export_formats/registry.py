@@ -29,7 +29,7 @@ def springs_text(
     form: one of FORMATS. unit: "m" for m, N, kg, s or "mm" for mm, N, t, s.
     first_number: first number or tag of nodes and elements, where the format has them.
 
-    Raises EquivalentError for another format or unit, and where two supports have the same name but
+    Raises EquivalentError for another format or unit, and if two supports have the same name but
     for letters that a format does not know.
     """
     if form not in FORMATS:

@@ -29,7 +29,7 @@ COLUMNS = (
 def rows(springs: SpringSet, unit: UnitSystem) -> list[dict[str, Any]]:
     """Return one dict per point and direction that has a spring, with the keys COLUMNS.
 
-    c is None where it is not resolved.
+    c is None if it is not resolved.
     """
     table = []
     for spring in springs.springs:
@@ -49,7 +49,7 @@ def rows(springs: SpringSet, unit: UnitSystem) -> list[dict[str, Any]]:
 
 
 def csv_text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
-    """Return the CSV text: a header and the rows; c is empty where it is not resolved.
+    """Return the CSV text: a header and the rows; c is empty if it is not resolved.
 
     Warnings stand before the header, in lines that begin with #.
     """

@@ -54,7 +54,7 @@ class Places:
         return np.array([at[name] + length * self.directions[name] for name in at])
 
     def of(self, effect):
-        """Return [(3,)] where a FoundEffect acts, empty where that is the whole structure."""
+        """Return [(3,)] where a FoundEffect acts, empty if that is the whole structure."""
         location, named = effect.location, self.named()
         if location in named:
             return [named[location]]
@@ -75,7 +75,7 @@ class Places:
 
 
 def places_of(config, data):
-    """Return the Places of a configuration (None where the structure has no model) and of a Dataset
+    """Return the Places of a configuration (None if the structure has no model) and of a Dataset
     with the points and directions of channels and forces.
     """
     line, supports, points = None, {}, {}
@@ -111,7 +111,7 @@ def places_of(config, data):
 def place_figure(config, data, effects):
     """Return the Sheet of the structure with the places of effects [FoundEffect] marked.
 
-    config, data: as of places_of; data None where no campaign was compared.
+    config, data: as of places_of; data None if no campaign was compared.
     """
     caption = (
         "The structure, seen on the plane of its largest extents, to scale: supports (grey bars),"
@@ -230,7 +230,7 @@ def _directed(sheet, axes, named, directions, seen, look):
 
 
 def _marked(sheet, axes, places, effect, view, columns):
-    """Mark where an effect acts; return its label, None where there is nothing to mark."""
+    """Mark where an effect acts; return its label, None if there is nothing to mark."""
     spots = places.of(effect)
     whole = not spots
     if whole:

@@ -134,5 +134,5 @@ def _panel(psd, record, channel, completed):
 
 
 def _kind(psd, channel):
-    """Return the kind of a channel, empty where it is not known."""
+    """Return the kind of a channel, empty if it is not known."""
     return str(psd["channel_kind"].values[channel]) if "channel_kind" in psd else ""

@@ -54,7 +54,7 @@ def diagnosis_figures(
 
 
 def _drawn(name, figure, data, variable, title, why):
-    """Return the Plot of a figure, one that says why there is none where data lack a variable."""
+    """Return the Plot of a figure, one that says why there is none if data lack a variable."""
     if variable in data:
         return figure(data)
     why = data.attrs.get("left_out", why) if data else REFUSED

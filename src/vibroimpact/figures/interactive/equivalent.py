@@ -154,7 +154,7 @@ def _bounds(chosen: Sequence[Answer]) -> list[Series]:
 
 
 def _method(quantity, method, rows):
-    """Return the curve of one method in a list, empty where it has no value at any load."""
+    """Return the curve of one method in a list, empty if it has no value at any load."""
     chosen = [
         row
         for row in rows

@@ -348,7 +348,7 @@ def _log_ticks(low: float, high: float) -> dict[str, Any]:
 
 
 def _range(axis: Axis) -> list:
-    """Return the ends of an axis as plotly.js takes them, empty where the data set one of them."""
+    """Return the ends of an axis as plotly.js takes them, empty if the data set one of them."""
     if axis.low is None or axis.high is None:
         return []
     ends = shown(axis.column, [axis.low, axis.high])

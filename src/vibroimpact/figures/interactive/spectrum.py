@@ -66,7 +66,7 @@ def spectra_of_series(
     """Return (sensor, frequency, spectra) as spectra_of_sensor does, from time series.
 
     For a study that keeps its time series and identifies nothing. The sensor is the one that moves
-    most at the largest load; the spectra are those of the first seed. They are empty where no
+    most at the largest load; the spectra are those of the first seed. They are empty if no
     segment fits in a record.
 
     paths: files of time series named after their cases.

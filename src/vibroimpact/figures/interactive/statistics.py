@@ -171,7 +171,7 @@ def _stress_by_section(statistics, places):
 def energy_plot(
     statistics: StudyStatistics, limits: dict[str, float], load_label: str
 ) -> PagePlot | None:
-    """Return the plot of the energy residuals of all gaps; None where they were not recorded.
+    """Return the plot of the energy residuals of all gaps; None if they were not recorded.
 
     limits: {quantity: largest accepted value}.
     """

@@ -53,7 +53,7 @@ def basis_quality(config, rows):
 
 
 def _errors(rows, vectors, **look):
-    """Return the worst error of one basis in a list, empty where the report has none.
+    """Return the worst error of one basis in a list, empty if the report has none.
 
     A tube without supports has no constrained modes.
     """

@@ -37,7 +37,7 @@ class StudyBeside:
 
 
 def study_beside(config, folder):
-    """Return the StudyBeside of a folder of results, None where it holds no finished study, or one
+    """Return the StudyBeside of a folder of results, None if it holds no finished study, or one
     of another configuration.
     """
     table = Path(folder) / "consistency.csv"

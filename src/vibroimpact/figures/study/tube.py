@@ -50,7 +50,7 @@ def view_axes(positions):
 
 
 def towards_reader(view):
-    """Return 1 where the depth axis of a view points towards the reader, -1 where away.
+    """Return 1 if the depth axis of a view points towards the reader, -1 where away.
 
     The global axes are right-handed: with x to the right and z up, y points away.
     """
@@ -123,7 +123,7 @@ def _section_in_words(section):
 
 
 def _filled(pair):
-    """Return a row of two panels, the second one empty where there is none."""
+    """Return a row of two panels, the second one empty if there is none."""
     return pair if len(pair) == 2 else [*pair, "."]
 
 

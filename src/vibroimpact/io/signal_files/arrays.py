@@ -27,7 +27,7 @@ class Arrays:
     units {name: text}, unit_from: units of the columns, and where in the file they stand.
     attributes: of the file.
     note: how the file was read.
-    lines (time,): line of the file that holds a sample, None where there are no lines.
+    lines (time,): line of the file that holds a sample, None if there are no lines.
     left_out {name: why}: what else the file holds, in words that follow the name.
     """
 

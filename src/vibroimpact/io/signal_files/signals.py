@@ -44,13 +44,13 @@ class Signal:
     name: as the sidecar refers to it.
     file: path.
     values (time,): in `unit`.
-    rate: Hz, None where the file does not state it.
+    rate: Hz, None if the file does not state it.
     unit, kind, point (3,) m, direction (3,), force: as the file states them, else "" or None.
     unit_from: where in the file the unit stands.
     aliases: other names of the signal.
     note: how the file was read and its values were changed.
-    start: s, of the first sample; None where the file has no time.
-    lines (time,): line of the file that holds a sample, None where the file has none.
+    start: s, of the first sample; None if the file has no time.
+    lines (time,): line of the file that holds a sample, None if the file has none.
     left_out: {name: why} of what else the file holds, in words that follow the name.
     """
 
@@ -131,7 +131,7 @@ def even_samples(time: np.ndarray, values: np.ndarray, place: str) -> tuple[np.n
 
 def _rounding(time: np.ndarray, step: float) -> float:
     """Return the power of ten in s that time stamps (time,) are rounded to where they have the
-    fewest decimals, at the end; 0 where it is finer than six digits or no small part of a step.
+    fewest decimals, at the end; 0 if it is finer than six digits or no small part of a step.
     """
     largest = np.abs(time).max()
     late = time[np.abs(time) >= 10.0 ** np.floor(np.log10(max(largest, 1e-300)))]
