@@ -1,8 +1,8 @@
-"""What Snakemake shows of a run on a terminal: a bar with the time left, and the jobs by their
+"""The display of a run on a terminal: a bar with the time left, and the jobs by their
 messages.
 
 Snakemake finds this package by its name: `--logger vibroimpact`, which the profile of the workflow
-gives where the output is a terminal. Everything that is no job and no progress is shown in
+gives if the output is a terminal. Everything that is no job and no progress is shown in
 Snakemake's own words; its log file is as ever.
 """
 
@@ -105,7 +105,7 @@ class LogHandler(LogHandlerBase):
 
     @property
     def has_formatter(self) -> bool:
-        """Snakemake's formatter is used for what is shown in its words."""
+        """Snakemake's formatter is used for its own messages."""
         return False
 
     @property

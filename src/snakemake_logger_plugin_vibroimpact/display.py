@@ -1,4 +1,4 @@
-"""The last lines of the terminal during a run: a bar, the time left, and what is running."""
+"""The last lines of the terminal during a run: a bar, the time left, and the running jobs."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def duration(seconds: float) -> str:
 
 
 class Display:
-    """Shows the progress of a run below what is printed.
+    """Shows the progress of a run below the printed lines.
 
     console: of the terminal.
     now: clock in s.
@@ -75,7 +75,7 @@ class Display:
         self._live.stop()
 
     def lines(self) -> RenderableType:
-        """Return what is shown now."""
+        """Return the lines shown at this moment."""
         left = self.time_left.seconds(self.now())
         head = Table.grid(padding=(0, 1))
         head.add_row(

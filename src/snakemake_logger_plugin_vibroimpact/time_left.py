@@ -56,7 +56,7 @@ class TimeLeft:
         """Return the time left in s, None while too little has been measured to say.
 
         Every job is taken to need the mean of its kind; one of a kind that has no ended job, the
-        mean over the kinds that have. What the running jobs have done is taken off. The rest is
+        mean over the kinds that have. The work of the running jobs is taken off. The rest is
         shared by as many jobs as have been running at once.
         """
         jobs = sum(self.waiting.values())

@@ -20,7 +20,7 @@ from vibroimpact.wear import command as wear_command
 # Read when numpy is first imported. The matrices are small: threads would wait for each other, and
 # take up to ten times the CPU. Runs are what is done side by side.
 ONE_THREAD = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL")}
-PREFIX = {"warn": "warning: ", "not checked": "{check}: "}  # of what a check says
+PREFIX = {"warn": "warning: ", "not checked": "{check}: "}  # of the sentence of a check
 NETCDF = (".nc", ".nc4", ".cdf")
 # How netCDF files begin, of the classic format and of HDF5.
 SIGNATURES = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF")
@@ -29,7 +29,7 @@ SIGNATURES = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF")
 def main(arguments: Sequence[str] | None = None) -> int:
     """Return the exit code of a command: 0 for success, 1 for a file with problems.
 
-    arguments: those of the command line where None. Raises SystemExit with code 2 for arguments
+    arguments: those of the command line if None. Raises SystemExit with code 2 for arguments
     that are no command.
     """
     for name, value in ONE_THREAD.items():
@@ -50,7 +50,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="vibroimpact",
         description="Vibration of tubes and other structures with gap supports. Studies are run"
-        " with snakemake; these commands check what they read.",
+        " with snakemake; these commands check their input.",
     )
     parser.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
@@ -59,7 +59,7 @@ def _parser() -> argparse.ArgumentParser:
         help="check a file and print every problem at once",
         description="Check a study configuration (.yaml), a measured campaign (.nc), the"
         " campaign.yaml of a folder of measurements, or the small file that asks for an identified"
-        " structure. Prints one line per problem, or one line that says what the file is. The exit"
+        " structure. Prints one line per problem, or one line that describes the file. The exit"
         " code is 1 if there are problems.",
     )
     check.add_argument("file", metavar="FILE")
@@ -85,22 +85,22 @@ def _parser() -> argparse.ArgumentParser:
         help="print the equivalent k and c of a study at a load and gap, and export them",
         description="Print the stiffness k and damping c that a linear model needs at the supports"
         " at one load and gap: from a finished study, interpolated inside its grid, or as an"
-        " estimate without a simulation. The exit code is 1 if there is no answer, or where a k"
-        " or c is not resolved; what is not resolved is never exported.",
+        " estimate without a simulation. The exit code is 1 if there is no answer, or if a k"
+        " or c is not resolved; unresolved values are never exported.",
     )
     add_arguments(answer)
     diagnosis = commands.add_parser(
         "diagnose",
-        help="say what a model lacks, given a measured campaign",
-        description="Hold the model to the measured motion and say which effect it lacks, where and"
-        " how strong, and how sure that is. Prints one line per explanation that was fitted, then"
-        " the verdict. The exit code is 1 if the campaign can not be compared with the model.",
+        help="name the effect that a model lacks, given a measured campaign",
+        description="Hold the model to the measured motion and name the effect that it lacks, its"
+        " place, its size and its probability. Prints one line per explanation that was fitted,"
+        " then the verdict. The exit code is 1 if the campaign can not be compared with the model.",
     )
     diagnose_command.add_arguments(diagnosis)
     compare = commands.add_parser(
         "compare",
         help="hold measured frequency responses to the linear model",
-        description="Print the modes of measured frequency responses beside those of the linear"
+        description="Compare the modes of measured frequency responses with those of the linear"
         " model, and which channels contradict it: swapped, reversed, or in another unit. The file"
         " is a universal file with frequency responses (dataset 58, function type 4) of one force,"
         " or of one accelerometer under a roving hammer, with its nodes; or a measured campaign,"
@@ -113,12 +113,12 @@ def _parser() -> argparse.ArgumentParser:
     supports = commands.add_parser(
         "supports",
         help="print the contact forces at the supports of a measured structure, from its sensors",
-        description="Print what remote sensors tell of each support in each record of a measured"
-        " campaign: contact force, time in contact, impacts, wear work rate, secant stiffness and"
-        " damping. The model is held to the measured motion by dampers at the sensors; its contact"
-        " forces are then those of the structure. Measured contact forces are not used, they are"
-        " shown beside. Values that can not be relied on say why. The exit code is 1 if the"
-        " campaign can not be compared with the model.",
+        description="Print values at each support in every record of a measured campaign, from"
+        " remote sensors: contact force, time in contact, impacts, wear work rate, secant stiffness"
+        " and damping. The model is held to the measured motion by dampers at the sensors; its"
+        " contact forces are then those of the structure. Measured contact forces are not used,"
+        " only compared. Values that can not be relied on state the reason. The exit code is 1 if"
+        " the campaign can not be compared with the model.",
     )
     supports_command.add_arguments(supports)
     stability = commands.add_parser(
@@ -254,7 +254,7 @@ def _is_netcdf(path: str) -> bool:
 
 
 def _campaign(path: str) -> tuple[str | None, list[str]]:
-    """Return (what a campaign is, None if it is refused; its problems and warnings)."""
+    """Return (description of a campaign, None if it is refused; its problems and warnings)."""
     from vibroimpact.campaign.checks.file_checks import check_file, refused
     from vibroimpact.diagnosis.measurement.comparable import campaign_problems, channel_rows
 
@@ -279,7 +279,7 @@ def _campaign(path: str) -> tuple[str | None, list[str]]:
 
 
 def _configuration(path: str) -> tuple[str | None, list[str]]:
-    """Return (what a YAML file is, None if it has problems; its problems)."""
+    """Return (description of a YAML file, None if it has problems; its problems)."""
     from vibroimpact.config.problems import ConfigError
     from vibroimpact.config.yaml_file import read_yaml
 
@@ -297,7 +297,7 @@ def _configuration(path: str) -> tuple[str | None, list[str]]:
 
 
 def _study(data: dict, path: str) -> tuple[str | None, list[str]]:
-    """Return (what a study is, its problems). Raises ConfigError."""
+    """Return (description of a study, its problems). Raises ConfigError."""
     from vibroimpact.config.problems import ConfigError
     from vibroimpact.config.reading import check_config
     from vibroimpact.study.cases import all_cases
@@ -326,7 +326,7 @@ def _study(data: dict, path: str) -> tuple[str | None, list[str]]:
 
 
 def _load_of_spectrum(config) -> str:
-    """Return what load a spectrum with a level stands for, "" for a force without one."""
+    """Return the load of a spectrum that has a level, "" for a force without one."""
     force = config.excitation
     if force.kind != "turbulence" or force.spectrum.kind == "flat":
         return ""
@@ -338,7 +338,7 @@ def _load_of_spectrum(config) -> str:
 
 
 def _named(config) -> str:
-    """Return " of zircaloy_4 at 20 °C (...)" with the properties of what is named, else ""."""
+    """Return " of zircaloy_4 at 20 °C (...)" with the properties of a named metal, else ""."""
     structure = config.structure
     material = getattr(structure, "material", None)
     words = ""
@@ -391,7 +391,7 @@ def _measured_files(config) -> tuple[str, list[str]]:
 
 
 def _sidecar(path: str) -> tuple[str | None, list[str]]:
-    """Return (what the campaign.yaml of a folder of measurements is, its problems)."""
+    """Return (description of the campaign.yaml of a folder of measurements, its problems)."""
     from vibroimpact.campaign.importing.sidecar import read_sidecar
     from vibroimpact.io.signal_files.signals import ImportProblem
 
@@ -407,7 +407,7 @@ def _sidecar(path: str) -> tuple[str | None, list[str]]:
 
 
 def _structure_file(path: str) -> tuple[str | None, list[str]]:
-    """Return (what a file without modes asks for, its problems). Raises ConfigError."""
+    """Return (description of a file without modes, its problems). Raises ConfigError."""
     from vibroimpact.diagnosis.identified.structure_file import read_structure
 
     stated = read_structure(path)

@@ -1,4 +1,4 @@
-"""The command `vibroimpact stability`: its arguments, and what it prints and writes.
+"""The command `vibroimpact stability`: its arguments, its output and its files.
 
 The library is imported when the command runs, so that `--help` answers at once.
 """
@@ -64,9 +64,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--simulate",
         action="store_true",
-        help="simulate the tube with its gaps at every velocity too, and print where its response"
-        " leaves that without flow, beside the critical velocities of equivalent linear tubes"
-        " (needs flow.coupling)",
+        help="simulate the tube with its gaps at every velocity too, and print the velocity at"
+        " which its response leaves that without flow, and the critical velocities of equivalent"
+        " linear tubes (needs flow.coupling)",
     )
     parser.add_argument(
         "--out", metavar="DIR", help="write stability.csv, eigenvalues.csv and the figure there"
@@ -151,7 +151,7 @@ def _simulated(config: Config, folder: str | None) -> list[str]:
 
 
 def _of_eigenvalues(found: Stability) -> Iterator[str]:
-    """Yield what the eigenvalues say, with an empty line before."""
+    """Yield the result of the eigenvalues, with an empty line before."""
     own = found.eigenvalues
     if own is None:
         return

@@ -107,12 +107,12 @@ def test_region_names_each_nearby_mode_once():
 
 STORY = (
     "The model lacks",
-    "How sure",
-    "Where model and measurement part",
-    "What is missing",
-    "What adding it does",
-    "What was ruled out, and why",
-    "What would separate what is left",
+    "Probability",
+    "Differences of model and measurement",
+    "The missing effect",
+    "Gain of the completed model",
+    "Explanations ruled out",
+    "A measurement that separates the rest",
     "Checks of the campaign",
 )
 
@@ -147,7 +147,7 @@ def test_no_region_is_shown_where_nothing_is_missing():
     open_page = discrepancy_page("campaign", made_up_verdict("unknown", regions=[]), [])
     assert "No band is beyond chance by itself" in open_page
     untested = made_up_verdict("none", regions=[], p_global_before=None, broken_invariances=[])
-    assert "Where model and measurement part" not in discrepancy_page("campaign", untested, [])
+    assert "Differences of model and measurement" not in discrepancy_page("campaign", untested, [])
 
 
 def test_probabilities_are_bars_and_are_explained():
@@ -278,7 +278,7 @@ def test_headline_says_how_sure_it_is():
 
 def test_nothing_is_said_of_after_where_nothing_was_added():
     page = discrepancy_page("campaign", made_up_verdict("unknown"), [])
-    assert "How far off the model is" in page and "after (dB)" not in page
+    assert "Misfit of the model" in page and "after (dB)" not in page
     assert "after (dB)" in discrepancy_page("campaign", made_up_verdict("named"), [])
 
 

@@ -1,4 +1,4 @@
-"""Write the reduced model, its accuracy, and what each family of its basis brings."""
+"""Write the reduced model, its accuracy, and the contribution of each family of its basis."""
 
 from vibroimpact.io.job_log import run_job
 from vibroimpact.stages import basis

@@ -1,4 +1,4 @@
-"""The motion of the base in what sensors on a shaken structure measure.
+"""The motion of the base in the signals of sensors on a shaken structure.
 
 A model describes the motion relative to the base, on which supports and obstacles ride.
 Accelerometers and vibrometers measure the absolute motion: the relative one, and that of the base
@@ -27,7 +27,7 @@ NO_BAND_HZ = 1.0
 
 
 def moves_with_base(signals: CampaignSignals) -> np.ndarray:
-    """Return (channel,) bool, whether the base's own motion is part of what a channel measures."""
+    """Return (channel,) bool, whether the base's own motion is part of a channel's signal."""
     if BASE not in signals.force_kinds:
         return np.zeros(len(signals.kinds), bool)
     return np.array([kind in INTEGRALS for kind in signals.kinds], bool)
@@ -74,7 +74,7 @@ def integrated(acceleration: np.ndarray, rate: float, low_Hz: float) -> np.ndarr
     """Return (..., sample) m/s: the integral over time of accelerations (..., sample) in m/s².
 
     rate: Hz.
-    low_Hz: lower end of the excited band; see INTEGRATED_FROM for what is below it.
+    low_Hz: lower end of the excited band; below it see INTEGRATED_FROM.
 
     Missing samples count as 0.
     """
@@ -91,7 +91,7 @@ def integrated(acceleration: np.ndarray, rate: float, low_Hz: float) -> np.ndarr
 
 
 def base_motion_rows(signals: CampaignSignals) -> Iterator[dict]:
-    """Yield rows of checks that tell what was taken out of which channels, and what was not."""
+    """Yield rows of checks that name the channels from which the base motion was subtracted."""
     if BASE not in signals.force_kinds:
         return
     bases = [
@@ -111,8 +111,8 @@ def base_motion_rows(signals: CampaignSignals) -> Iterator[dict]:
         yield check_row(
             "base motion",
             "warn",
-            f"The displacements {', '.join(fixed)} are taken as relative to the base: where their"
-            " sensors stand beside the shaker table, leave them out.",
+            f"The displacements {', '.join(fixed)} are taken as relative to the base: if their"
+            " sensors stand on the floor, leave them out.",
         )
 
 
@@ -123,7 +123,7 @@ def _unit(directions: np.ndarray) -> np.ndarray:
 
 
 def _lowest_Hz(signals: CampaignSignals) -> float:
-    """Return the lower end in Hz of the band that the base excites, NO_BAND_HZ where no record is
+    """Return the lower end in Hz of the band that the base excites, NO_BAND_HZ if no record is
     long enough to tell it.
     """
     band = transfer_band(signals)

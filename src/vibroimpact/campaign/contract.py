@@ -1,6 +1,6 @@
-"""What a campaign file must hold: variables, dimensions, types. See campaign/file.py for the list.
+"""The contract of a campaign file: variables, dimensions, types. See campaign/file.py for the list.
 
-What may stand in them is in campaign/stated_values.py. A problem is a sentence that begins with
+Their allowed values are in campaign/stated_values.py. A problem is a sentence that begins with
 the variable or attribute, without the file's name.
 """
 
@@ -55,7 +55,7 @@ TEXTS = (
 SERIES = ("force", "response", "voltage")
 SEE = "see docs/bring_your_own.md"
 NO_FORCE = (
-    "holds no force: there is no verdict on what a model lacks; k and c of the supports can be"
+    "holds no force: there is no verdict on a model; k and c of the supports can be"
     " read, see docs/measured_supports.md"
 )
 
@@ -65,7 +65,7 @@ def contract_problems(campaign: xr.Dataset, force_needed: bool = True) -> Iterat
 
     force_needed: whether there must be a force channel.
 
-    The values of SERIES are not looked at: what is wrong in them concerns single signals.
+    The values of SERIES are not looked at: the fault in them concerns single signals.
     """
     sound = set()
     forms = NEEDED | FILLED | OPTIONAL

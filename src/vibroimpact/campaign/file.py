@@ -1,11 +1,11 @@
 """The campaign file: measured forces and responses at several levels and gaps, in netCDF-4.
 
-Dimensions: record, channel, force_channel, time; xyz and support where used.
+Dimensions: record, channel, force_channel, time; xyz and support if used.
 
 Required variables:
 
 - force (record, force_channel, time): N, or force_channel_units (force_channel); an acceleration
-  where force_channel_kind says base_acceleration
+  if force_channel_kind says base_acceleration
 - response (record, channel, time): channel_units (channel), any UDUNITS text
 - channel_kind (channel): acceleration, velocity, displacement, contact_force (of the support at
   channel_point on the structure, the sum over its contact points), strain (along a tube, by its
@@ -16,10 +16,10 @@ Required variables:
 - force_channel_name, force_channel_point, force_channel_direction: the same for forces
 - gap (record): m, NaN if there is none
 
-Variables filled in where they are missing (see fill_missing):
+Variables filled in if they are missing (see fill_missing):
 
 - record_name (record), repeat (record), split (record): fit or holdout
-- load_rms (record): N, or m s-2 where that is a base acceleration: RMS of force channel 0 about its
+- load_rms (record): N, or m s-2 if that is a base acceleration: RMS of force channel 0 about its
   mean over the valid samples, see load_of
 
 Optional variables:
@@ -138,7 +138,7 @@ def campaign_dataset(
 
     force (record, force_channel, time): in the units of the drives.
     response (record, channel, time): in the units of the channels.
-    channels, drives: lists of Channel; a drive is a force where its kind is not base_acceleration.
+    channels, drives: lists of Channel; a drive is a force if its kind is not base_acceleration.
         Without a drive no force was measured, and `force` is not read.
     levels: list of Level, one per record.
     sampling_frequency: Hz.
@@ -487,7 +487,7 @@ def channel_factor(campaign: xr.Dataset, channel: int) -> float:
 
 
 def force_signal(campaign: xr.Dataset, record: int, force_channel: int = 0) -> np.ndarray:
-    """Return (time,) the valid samples of a force of a record, in N (V where volts were recorded,
+    """Return (time,) the valid samples of a force of a record, in N (V if volts were recorded,
     m/s² for an acceleration of the base).
 
     Raises CampaignError for an unknown unit.
@@ -500,14 +500,14 @@ def force_signal(campaign: xr.Dataset, record: int, force_channel: int = 0) -> n
 def measured_values(campaign: xr.Dataset, name: str, record: int) -> np.ndarray:
     """Return (channel, time) the valid samples of the force or response of a record, as stored.
 
-    NaN if a sample is missing: where it is not finite, or beyond LARGEST.
+    NaN for a missing sample: one that is not finite, or beyond LARGEST.
     """
     values = campaign[name].values[record, :, : valid_count(campaign, record)].astype(float)
     return np.where(np.abs(values) <= LARGEST, values, np.nan)
 
 
 def force_factor(campaign: xr.Dataset, force_channel: int) -> float:
-    """Return N per stored unit of a force channel (V per unit where volts were recorded, m/s² for
+    """Return N per stored unit of a force channel (V per unit if volts were recorded, m/s² for
     an acceleration of the base).
 
     Raises CampaignError for an unknown unit.
@@ -520,7 +520,7 @@ def force_factor(campaign: xr.Dataset, force_channel: int) -> float:
 
 
 def force_units(campaign: xr.Dataset, force_channel: int) -> str:
-    """Return the unit of a force channel as it is stored; N where the file does not say."""
+    """Return the unit of a force channel as it is stored; N if the file does not say."""
     if "force_channel_units" in campaign:
         return str(campaign["force_channel_units"].values[force_channel])
     return str(campaign["force"].attrs.get("units", "N"))

@@ -1,4 +1,4 @@
-"""What drives the structure of a campaign: measured forces, or the measured motion of its base.
+"""The drive of the structure of a campaign: measured forces, or the measured motion of its base.
 
 The variable force_channel_kind (force_channel) says it; without it every force channel is a force.
 """
@@ -28,7 +28,7 @@ def base_channels(campaign: xr.Dataset) -> np.ndarray:
 
 
 def unit_kinds(campaign: xr.Dataset) -> list[str]:
-    """Return (force_channel,) what units.si_factor is to convert each force channel as."""
+    """Return (force_channel,) the kind as which units.si_factor converts each force channel."""
     return [BASE if kind == BASE else "excitation" for kind in force_kinds(campaign)]
 
 
@@ -38,5 +38,5 @@ def load_unit(campaign: xr.Dataset) -> str:
 
 
 def shown_load_unit(campaign: xr.Dataset) -> str:
-    """Return the unit of the loads as a reader is told it."""
+    """Return the unit of the loads in words."""
     return {"m s-2": "m/s²"}.get(load_unit(campaign), "N")

@@ -57,7 +57,7 @@ class CampaignSignals:
     rate: sampling frequency, Hz.
     records, channels, forces: names. kinds (channel,). force_kinds (force_channel,), see
     campaign.force_kinds. splits (record,): "fit" or "holdout".
-    load_rms (record,): N, or m/s² of a base, as stated, or that of the force where it differs, see
+    load_rms (record,): N, or m/s² of a base, as stated, or that of the force if it differs, see
     file.load_of.
     gap (record,): m, NaN if there is none.
     points (channel, xyz): m.
@@ -209,12 +209,12 @@ def blows(force: np.ndarray) -> int:
 
 
 def is_load(stated: float, found: float) -> bool:
-    """Return whether a stated load is that of the force, where that is known."""
+    """Return whether a stated load is that of the force, if that is known."""
     return not np.isfinite(found) or abs(found - stated) <= LOAD_TOLERANCE * max(found, 1e-300)
 
 
 def _loads(stated: np.ndarray, found: list[float]) -> np.ndarray:
-    """Return (record,) the stated loads, those of the force where they are not that."""
+    """Return (record,) the stated loads, those of the force if they are not that."""
     pairs = zip(stated.tolist(), found, strict=True)
     return np.array([load if is_load(load, own) else own for load, own in pairs])
 
@@ -222,7 +222,7 @@ def _loads(stated: np.ndarray, found: list[float]) -> np.ndarray:
 def common_period(forces: list[np.ndarray]) -> int:
     """Return the samples of the period that all forces (time,) have in common, 0 for none.
 
-    Each force holds it at least twice. It is searched where the file does not state one: the peaks
+    Each force holds it at least twice. It is searched if the file does not state one: the peaks
     of a periodic record recur in every period, and a check would take them for clipping.
     """
     periods = set()
@@ -282,7 +282,7 @@ def transfer(signals: CampaignSignals, record: int) -> Transfer | None:
 
 def transfer_or_reason(signals: CampaignSignals, record: int) -> Transfer | str:
     """Return the Transfer from force channel 0 of a record, at lines that the force excites within
-    the stated band; a sentence without a full stop where no average of that kind is possible.
+    the stated band; a sentence without a full stop if no average of that kind is possible.
     """
     name, force = signals.records[record], signals.force[record][:1]
     number = blows(force[0])
@@ -316,7 +316,7 @@ def transfer_or_reason(signals: CampaignSignals, record: int) -> Transfer | str:
         where = np.average(spectra.frequency, weights=force_psd * kept + np.finfo(float).tiny)
         return (
             f"{signals.forces[0]} excites {kept.sum()} lines of the spectrum of record {name},"
-            f" about {where:.3g} Hz, as a sine does, where {FEWEST_LINES} are needed: take a force"
+            f" about {where:.3g} Hz, as a sine does, and {FEWEST_LINES} are needed: take a force"
             " of many frequencies"
         )
     return _at_lines(spectra, force_psd, kept)
@@ -348,7 +348,7 @@ def _at_lines(spectra: SegmentSpectra, force_psd: np.ndarray, kept: np.ndarray) 
 def _excited(psd: np.ndarray) -> np.ndarray:
     """Return (line,) whether the force excites a line.
 
-    It does where its PSD is above EXCITED_SHARE of the PSD above which half of its power lies.
+    It does if its PSD is above EXCITED_SHARE of the PSD above which half of its power lies.
     """
     order = np.sort(psd[1:])[::-1]
     typical = (

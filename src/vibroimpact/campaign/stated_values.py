@@ -1,4 +1,4 @@
-"""What may stand in a campaign file: names, numbers, units and attributes that can be.
+"""The allowed values of a campaign file: names, numbers, units and attributes that can be.
 
 Each function yields sentences that begin with the place, "gap[0] = -0.001 m", and end with the
 remedy.
@@ -36,7 +36,7 @@ class Range:
     unit: of the values, "" if they have none. Another one in the attribute `units` is a problem.
     whole: only whole numbers.
     unknown: NaN stands for a value that is not known.
-    remedy: what to write; too_high: the same for a finite number that is too large.
+    remedy: the value to write; too_high: the same for a finite number that is too large.
     """
 
     low: float
@@ -104,7 +104,7 @@ def stated_value_problems(campaign: xr.Dataset, sound: set[str]) -> Iterator[str
 
 
 def _range_problem(name: str, values: np.ndarray, allowed: Range) -> Iterator[str]:
-    """Yield a sentence about the first value out of range: which, how many more, what to write."""
+    """Yield a sentence about the first value out of range: which, how many more, the remedy."""
     numbers = values.astype(float)
     known = np.isnan(numbers) if allowed.unknown else np.zeros(numbers.shape, bool)
     inside = (numbers >= allowed.low) & (numbers <= allowed.high)
@@ -132,7 +132,7 @@ def _range_problem(name: str, values: np.ndarray, allowed: Range) -> Iterator[st
 
 
 def _unit_problem(campaign: xr.Dataset, name: str, unit: str) -> Iterator[str]:
-    """Yield a sentence where a variable states another unit than the one it is read in."""
+    """Yield a sentence if a variable states another unit than the one it is read in."""
     stated = campaign[name].attrs.get("units", "")
     if unit and str(stated).strip() not in ("", unit, "metre", "meter", "metres", "meters"):
         yield f"'{name}' has the attribute units = '{stated}': write its values and units in {unit}"
@@ -203,8 +203,8 @@ def _attribute_problems(campaign: xr.Dataset) -> Iterator[str]:
         )
     if not isinstance(attributes.get("antialias", ""), str):
         yield (
-            f"antialias = {_shown(attributes['antialias'])} is no text: write fir80, none, or what"
-            " the recorder did"
+            f"antialias = {_shown(attributes['antialias'])} is no text: write fir80 or none, or the"
+            " filter of the recorder"
         )
 
 

@@ -1,4 +1,4 @@
-"""Numbers in --config NAME=NUMBER, beside the keys of the study."""
+"""Numbers in --config NAME=NUMBER, in addition to the keys of the study."""
 
 from __future__ import annotations
 

@@ -140,7 +140,7 @@ def _force(excitation: Excitation) -> Problems:
         yield (
             "excitation.file",
             excitation.file,
-            "is not a file: give its path from the folder where the study is run",
+            "is not a file: give its path from the folder in which the study is run",
         )
 
 
@@ -149,7 +149,7 @@ def _overlay(overlay: Overlay, grid: Grid) -> Problems:
         yield (
             "overlay.campaign",
             overlay.campaign,
-            "is not a file: give its path from the folder where the study is run, or null",
+            "is not a file: give its path from the folder in which the study is run, or null",
         )
     if overlay.seed < grid.seeds:
         yield (
@@ -186,7 +186,7 @@ def _broadband_is_excited(excitation: Excitation, identification: Identification
             "identification.broadband.band_Hz",
             list(asked),
             (
-                f"reaches beyond the excited band {[low, high]} Hz, where spectra of a tube and of"
+                f"reaches beyond the excited band {[low, high]} Hz: there spectra of a tube and of"
                 " its linear equivalent are not comparable"
             ),
         )

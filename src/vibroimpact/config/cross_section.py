@@ -104,7 +104,7 @@ class GeneralSection(Section):
 
 
 def _kind_of_section(value: Any) -> str:
-    """Return the kind of a cross-section; tube where it says none."""
+    """Return the kind of a cross-section; tube if it says none."""
     kind = value.get("kind", "tube") if isinstance(value, dict) else getattr(value, "kind", "tube")
     return str(kind)
 

@@ -48,7 +48,7 @@ UNITS = {
 class DeclaredKey:
     """A key of a section.
 
-    holds: its type, in words; unit: "" for what is no number, "1" for a number without unit;
+    holds: its type, in words; unit: "" for no number, "1" for a number without unit;
     range: such as "> 0, ≤ 2"; default: as YAML writes it, None if the key is required; sections:
     the sections that its value consists of.
     """
@@ -69,7 +69,7 @@ class DeclaredSection:
 
     place: dotted key, "" for the top level; `[]` follows a key that holds a list of sections.
     kind: the value of `kind` that selects it, None if there is no choice.
-    meaning: what it is.
+    meaning: its description.
     """
 
     place: str
@@ -111,7 +111,7 @@ def place_of(section: str, key: str) -> str:
 
 def unit_of(name: str, field: FieldInfo) -> str:
     """Return the unit of a key: stated by its type, else by the ending of its name; "1" for whole
-    numbers, "" for what is no number.
+    numbers, "" for other types.
 
     Raises ValueError for a number whose unit is stated nowhere.
     """
@@ -172,7 +172,7 @@ def _annotation(field: FieldInfo) -> Any:
 
 
 def _metadata(annotation: Any) -> list[Any]:
-    """Return what Annotated adds anywhere inside a type, from the inside out."""
+    """Return the annotations that Annotated adds anywhere inside a type, from the inside out."""
     if get_origin(annotation) is Annotated:
         inner, *own = get_args(annotation)
         return [*_metadata(inner), *own]
@@ -199,7 +199,7 @@ WORDS = {float: "number", int: "whole number", bool: "true or false", str: "text
 
 
 def _in_words(annotation: Any) -> str:
-    """Return what a value of a type is, in words."""
+    """Return the description of a type in words."""
     if get_origin(annotation) is Annotated:
         inner, *own = get_args(annotation)
         lengths = [each.count for each in own if isinstance(each, Length)]
@@ -224,7 +224,7 @@ def _in_words(annotation: Any) -> str:
 
 
 def _several(words: str) -> str:
-    """Return the plural of what _in_words returns."""
+    """Return the plural of the words of _in_words."""
     for one, several in (("list of", "lists of"), ("block of keys", "blocks of keys")):
         if words.startswith(one):
             return words.replace(one, several, 1)

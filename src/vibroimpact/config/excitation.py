@@ -1,4 +1,4 @@
-"""The keys of the forces: where they act and how they vary in time."""
+"""The keys of the forces: their places and their course in time."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ CONSTANT = "Constant forces, the same in all cases."
 
 
 class Forces(Section):
-    """Where the force of the case acts: at a point, and at what `also` and `distributed` list."""
+    """The places of the force of a case: a point, and those in `also` and `distributed`."""
 
     point: Name = Field(description="Named point that the force acts at.", examples=["shaker"])
     direction: Direction = Field(description=DIRECTION, examples=[[0.0, 1.0, 0.0]])
@@ -96,7 +96,7 @@ BAND = (
 )
 HARMONIC = "Frequency of the sine."
 PHASE = (
-    "Phase of the sine, sqrt(2) load sin(2 pi f t + phase). t = 0 at the start of the record; where"
+    "Phase of the sine, sqrt(2) load sin(2 pi f t + phase). t = 0 at the start of the record; if"
     " record.every_step is true, at the start of the run."
 )
 
@@ -120,7 +120,7 @@ class Measured(Forces):
     kind: Literal["measured"] = Field(description="This kind of excitation.", examples=["measured"])
     file: str = Field(
         description="File of the force: netCDF (.nc), CSV with a header line (.csv) or MATLAB v5"
-        " (.mat), from the folder where the study is run.",
+        " (.mat), from the folder in which the study is run.",
         examples=["measurements/force.csv"],
     )
     variable: str = Field(description="Name of the variable or column.", examples=["force"])

@@ -171,7 +171,7 @@ class Flow(Section):
         (), description="Stretches that the flow acts on; none for the whole tube."
     )
     criterion: Annotated[Connors | Tema, By_kind] = Field(
-        description="What gives the critical velocity of a mode."
+        description="The criterion of the critical velocity of a mode."
     )
     coupling: Coupling | None = Field(
         None, description="Fluid-elastic force, for eigenvalues against velocity; null for none."

@@ -36,10 +36,10 @@ OR_NAMED = "Null for that of the named fluid."
 NAME = "Name of a fluid at saturation; null for numbers."
 TEMPERATURE = "Temperature of the named fluid; null for 20 °C."
 FROM = (
-    "Position on the tube where the fluid begins; null for the start of the tube. The stretch may"
+    "Position of the start of the fluid; null for the start of the tube. The stretch may"
     " be given from either end."
 )
-TO = "Position on the tube where the fluid ends; null for the end of the tube."
+TO = "Position of the end of the fluid; null for the end of the tube."
 Coefficient_of_mass = Annotated[
     Number, Range("1 for a circle in much fluid, more when confined", at_least=0), Unit("1")
 ]
@@ -66,7 +66,7 @@ class Bundle(Section):
 
 
 class Annulus(Section):
-    """A tube in a round channel, or in what confines it as much."""
+    """A tube in a round channel, or in a confinement of the same effect."""
 
     kind: Literal["annulus"] = Field(description="This kind of confinement.", examples=["annulus"])
     equivalent_diameter_m: Diameter_m = Field(
@@ -130,7 +130,7 @@ class FluidOutside(FluidInside):
         description="This kind of fluid.", examples=["outside"]
     )
     confinement: Annotated[Unconfined | Bundle | Annulus | AddedMassCoefficient, By_kind] = Field(
-        Unconfined(kind="unconfined"), description="What confines the fluid."
+        Unconfined(kind="unconfined"), description="The confinement of the fluid."
     )
     viscosity_Pa_s: Viscosity | None = Field(
         None,

@@ -118,7 +118,7 @@ def points_on_the_tube(structure: Tube, points: Mapping[str, Sequence[float]]) -
 
 
 def supports_on_the_tube(structure: Tube, supports: Sequence[Support]) -> Problems:
-    """Yield a problem unless supports are on one segment of the tube each, where it can move, and
+    """Yield a problem unless supports are on one movable segment of the tube each, and
     do not overlap.
     """
     centreline = centreline_of(structure)
@@ -178,7 +178,7 @@ def _lattice_bars(centreline: Centreline, place: str, support: Support) -> Probl
 
 
 def _across_a_joint(centreline: Centreline, place: str, support: Support) -> Problems:
-    """Yield a problem where a support reaches across a joint of two segments."""
+    """Yield a problem if a support reaches across a joint of two segments."""
     joints = [segment.end for segment in centreline.segments[:-1]]
     spans = zip(
         support_middles(centreline, support), support_spans(centreline, support), strict=True
@@ -203,7 +203,7 @@ def _across_a_joint(centreline: Centreline, place: str, support: Support) -> Pro
 def _at_a_held_end(
     structure: Tube, centreline: Centreline, place: str, support: Support
 ) -> Problems:
-    """Yield a problem where a support has a contact point at an end that does not move."""
+    """Yield a problem if a support has a contact point at an end that does not move."""
     kinds = (
         (structure.root.kind, structure.root.kind)
         if structure.kind == "u_tube"

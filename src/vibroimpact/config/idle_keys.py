@@ -40,7 +40,7 @@ def idle_keys(config: Config) -> Iterator[str]:
 
 
 def _idle(place: str, section: Section, key: str, why: str, remedy: str = OUT) -> Iterator[str]:
-    """Yield a sentence where a key has another value than its default, and is not 0: that asks for
+    """Yield a sentence if a key has another value than its default, and is not 0: that asks for
     nothing.
     """
     value, field = getattr(section, key), type(section).model_fields[key]

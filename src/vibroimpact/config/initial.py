@@ -53,7 +53,9 @@ class ModeDisplacement(Section):
 
     kind: Literal["mode"] = Field(description="This kind of field.", examples=["mode"])
     number: Mode_number = Field(description=NUMBER, examples=[1])
-    point: Name = Field(description="Named point where the amplitude is given.", examples=["tip"])
+    point: Name = Field(
+        description="Named point at which the amplitude is given.", examples=["tip"]
+    )
     direction: Axis = Field(description="Direction of the amplitude.", examples=["x"])
     amplitude_m: Amplitude = Field(
         description="Displacement of the point along the direction.", examples=[1.0e-3]
@@ -65,7 +67,9 @@ class ModeVelocity(Section):
 
     kind: Literal["mode"] = Field(description="This kind of field.", examples=["mode"])
     number: Mode_number = Field(description=NUMBER, examples=[1])
-    point: Name = Field(description="Named point where the amplitude is given.", examples=["tip"])
+    point: Name = Field(
+        description="Named point at which the amplitude is given.", examples=["tip"]
+    )
     direction: Axis = Field(description="Direction of the amplitude.", examples=["x"])
     amplitude_m_per_s: Amplitude = Field(
         description="Velocity of the point along the direction.", examples=[0.1]
@@ -117,8 +121,8 @@ class PlacesVelocity(Section):
 
 
 class Initial(Section):
-    """The state at the start of a run. What is left out is at rest at 0, or at static equilibrium
-    where a support presses.
+    """The state at the start of a run. Other parts are at rest at 0, or at static equilibrium
+    if a support presses.
     """
 
     displacement_m: dict[Name, dict[Axis, Number]] = Field(
@@ -148,12 +152,12 @@ class Initial(Section):
     base_displacement_m: Number = Field(
         0.0,
         description="Initial displacement of the base along the direction of the base motion. Used"
-        " where excitation.obstacles is `fixed`.",
+        " if excitation.obstacles is `fixed`.",
         examples=[0.0],
     )
     base_velocity_m_per_s: Number = Field(
         0.0,
         description="Initial velocity of the base along the direction of the base motion. Used"
-        " where excitation.obstacles is `fixed`.",
+        " if excitation.obstacles is `fixed`.",
         examples=[0.0],
     )

@@ -33,7 +33,7 @@ def initial_fields(
         if field is None:
             continue
         if getattr(initial, values):
-            yield place, field.kind, f"is given beside initial.{values}: give one of them"
+            yield place, field.kind, f"is given together with initial.{values}: give one of them"
         if field.kind == "mode":
             names = names_of_points(structure, points)
             if field.point not in names:

@@ -37,7 +37,7 @@ def markdown() -> str:
     measured = declared_measured_structure()
     parts += [
         f'<a id="{anchor(measured)}"></a>\n\n## `structure` without `modes`\n',
-        "The only section of the file that `--config model=FILE` gives beside a campaign.\n",
+        "The only section of the file that `--config model=FILE` gives for a campaign.\n",
         f"{_escaped(measured.meaning)}\n",
         _table(measured),
     ]

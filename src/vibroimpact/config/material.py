@@ -41,7 +41,7 @@ def named_or_given(*keys: str) -> ConfigDict:
 
 
 def named_temperature(value: Any, info: ValidationInfo, properties: Any) -> Any:
-    """Return the temperature in °C of what is named: that given, 20 °C, or None without a name.
+    """Return the temperature in °C of a named material: that given, 20 °C, or None without a name.
 
     properties: function of name and temperature that raises ValueError outside the known range.
     Raises PydanticCustomError with a sentence.
@@ -60,7 +60,7 @@ def named_temperature(value: Any, info: ValidationInfo, properties: Any) -> Any:
 
 
 def given_or_named(value: Any, info: ValidationInfo, properties: Any) -> Any:
-    """Return a value, or that of what is named at its temperature where it is None.
+    """Return a value, or that of the named material at its temperature if it is None.
 
     Raises PydanticCustomError if there is neither.
     """

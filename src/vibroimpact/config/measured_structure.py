@@ -162,7 +162,7 @@ class MeasuredStructure(Section):
         " `quadratic_stiffness`, `quadratic_drag`, `saturation_stiffness`, `clearance`,"
         " `single_friction`, `coulomb_friction` (sliders of several limits), `few_frictions` (three"
         " sliders), `saturation_damping` (a damper whose force stops at a limit). Default: all but"
-        " the last two, at the place where the response changes with the level and at others that"
+        " the last two, at the place whose response changes with the level and at others that"
         " explain it nearly as well.",
         examples=[["cubic_stiffness.joint", "clearance.joint"]],
     )
@@ -177,7 +177,7 @@ class MeasuredStructure(Section):
     residual_modes: Two_flags | None = Field(
         None,
         description="Whether a mode below and a mode above the band stand for those outside it."
-        " Default: where they lower the error at the lowest level.",
+        " Default: if they lower the error at the lowest level.",
         examples=[[True, True]],
     )
     mean: Flag = Field(

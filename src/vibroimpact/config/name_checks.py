@@ -149,7 +149,7 @@ def identification_needs(
     supports: Sequence[Support],
     identification: Identification,
 ) -> Problems:
-    """Yield a problem unless what is identified are the supports of a tube under a broadband
+    """Yield a problem unless the supports of a tube are identified under a broadband
     force.
     """
     if not supports:
@@ -251,7 +251,7 @@ def chain_names(structure: Structure) -> Problems:
             yield "structure.masses", name, f"names {times} masses: give each a name of its own"
     if "ground" in names:
         place = f"structure.masses[{names.index('ground')}].name"
-        yield place, "ground", "is what springs name the earth: give the mass another name"
+        yield place, "ground", "is the name of the earth in springs: give the mass another name"
     for index, spring in enumerate(structure.springs):
         if len(set(spring.between)) == 1:
             yield (

@@ -1,5 +1,5 @@
-"""Problems of a configuration as sentences: the place of a value, the value, what is wrong with it
-and what to do.
+"""Problems of a configuration as sentences: the place of a value, the value, the fault and the
+remedy.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class ConfigError(Exception):
     """A configuration that can not be used.
 
     problems: one sentence per problem; str() gives one line each.
-    mended: the configuration with its mistakes put right, where that leaves no doubt: for checks
+    mended: the configuration with its mistakes put right, if that leaves no doubt: for checks
         that need a whole one.
     """
 
@@ -102,7 +102,7 @@ def shown(value: Any) -> str:
 
 
 def _wanted(name: str, field: FieldInfo) -> str:
-    """Return what a key that is missing is, and a value that it could have."""
+    """Return the description of a missing key, and a value that it could have."""
     key = declared(name, field)
     meaning = key.meaning.split(". ")[0].rstrip(".")
     if meaning[1:2].islower():
@@ -136,8 +136,8 @@ def _place(path: list) -> str:
 class _Place:
     """A place of a configuration.
 
-    path: keys and indices. value: what is there, None if nothing is.
-    keys: {name: field} of those known beside the last part of the path.
+    path: keys and indices. value: the value there, None if there is none.
+    keys: {name: field} of those known at the last part of the path.
     sections: that the value can be, or consists of.
     """
 

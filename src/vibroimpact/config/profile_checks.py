@@ -1,4 +1,4 @@
-"""The checks of the profiles of supports: which may touch or press, and where their lands are. Each
+"""The checks of the profiles of supports: allowed contact and preload, places of their lands. Each
 yields (place, value, text), see checks.
 """
 
@@ -55,7 +55,7 @@ def preloads(supports: Sequence[Support]) -> Problems:
                 place,
                 support.preload_N,
                 (
-                    f"is given beside gap_m = {support.gap_m:g}, both say how the support presses:"
+                    f"is given together with gap_m = {support.gap_m:g}, both set the preload:"
                     " give one of them"
                 ),
             )
@@ -88,7 +88,7 @@ def profile_normals(structure: Structure, supports: Sequence[Support]) -> Proble
 
 
 def _stops_twice(place: str, normals_deg: Sequence[float]) -> Problems:
-    """Yield a problem where two stops of a profile are one."""
+    """Yield a problem if two stops of a profile are one."""
     for index, angle in enumerate(normals_deg):
         if any(
             abs((angle - other + 180.0) % 360.0 - 180.0) < SAME_DEG for other in normals_deg[:index]

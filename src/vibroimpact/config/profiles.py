@@ -1,4 +1,4 @@
-"""The keys of a support's profile: the shape of the obstacle round or beside the tube."""
+"""The keys of a support's profile: the shape of the obstacle at the tube."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ class Lobes(Section):
 
     kind: Literal["lobes"] = Field(description="This kind of profile.", examples=["lobes"])
     count: Annotated[Whole, Range("a quadrifoil has 4", at_least=2, at_most=24)] = Field(
-        description="Number of lands, the places where R is smallest: 3 for a trefoil, 4 for a"
+        description="Number of lands, the places of the smallest R: 3 for a trefoil, 4 for a"
         " quadrifoil.",
         examples=[4],
     )
@@ -92,7 +92,7 @@ class Lobes(Section):
 
 class Broached(Section):
     """A broached hole: lands evenly spaced round the tube, three in a trefoil, four in a
-    quadrifoil. The lands are flat, as in `planes`, or rounded, as in `lobes`, where depth_m is
+    quadrifoil. The lands are flat, as in `planes`, or rounded, as in `lobes`, if depth_m is
     given. Give normal or angle_deg.
     """
 
@@ -112,7 +112,7 @@ class Broached(Section):
 
 
 class Bars(Section):
-    """Flat bars beside the tube, such as anti-vibration bars. Contact acts along their normal only,
+    """Flat bars at the tube, such as anti-vibration bars. Contact acts along their normal only,
     in the plane across the tube; a bar is taken to be longer than the tube moves along it. Give
     normal or angle_deg.
     """

@@ -1,4 +1,4 @@
-"""The types of configuration values: each has its range, its unit where the key's name does not
+"""The types of configuration values: each has its range, its unit if the key's name does not
 end with it, and a remedy for values out of range.
 """
 
@@ -67,7 +67,7 @@ class Unit:
 
 @dataclass(frozen=True)
 class Checked:
-    """A check that runs after the type's own, and what it adds to the JSON schema."""
+    """A check that runs after the type's own, and its addition to the JSON schema."""
 
     remedy: str
 
@@ -161,7 +161,7 @@ class Length(Checked):
 
 @dataclass(frozen=True)
 class Pattern(Checked):
-    """A regular expression that the whole text matches; the remedy says what is allowed."""
+    """A regular expression that the whole text matches; the remedy states the allowed texts."""
 
     expression: str
 

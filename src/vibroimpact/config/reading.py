@@ -34,7 +34,7 @@ def load_config(path: str | os.PathLike[str], overrides: Mapping[str, Any] | Non
 def config_of(config: Config | str | os.PathLike[str]) -> Config:
     """Return a configuration as it is given, or that of a YAML file.
 
-    Raises ConfigError as load_config does, and for what is neither.
+    Raises ConfigError as load_config does, and for other objects.
     """
     if isinstance(config, (str, os.PathLike)):
         return load_config(config)
@@ -48,7 +48,7 @@ def config_of(config: Config | str | os.PathLike[str]) -> Config:
 def check_config(data: dict[str, Any], source: str) -> Config:
     """Return the Config of a mapping as YAML gives it.
 
-    source: what the mapping was read from; it begins every sentence.
+    source: the origin of the mapping; it begins every sentence.
     Raises ConfigError with every problem.
     """
     problems: list[str] = []
@@ -73,7 +73,7 @@ def check_config(data: dict[str, Any], source: str) -> Config:
 
 
 def _valid_sections(data: dict[str, Any], invalid: set) -> dict[str, Any]:
-    """Return {name: section} of the sections that are valid by themselves, with defaults where a
+    """Return {name: section} of the sections that are valid by themselves, with defaults if a
     section is absent.
     """
     sections = {}
@@ -109,6 +109,6 @@ def _mended(data: dict[str, Any], errors: Sequence[Mapping[str, Any]]) -> dict[s
 
 
 def _annotation(field: FieldInfo) -> Any:
-    """Return the full type of a field: pydantic keeps what stood in Annotated apart."""
+    """Return the full type of a field: pydantic keeps the contents of Annotated apart."""
     extras = [*field.metadata] + ([field] if field.discriminator else [])
     return Annotated[(field.annotation, *extras)] if extras else field.annotation

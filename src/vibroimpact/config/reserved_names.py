@@ -27,7 +27,7 @@ def name_problem(name: str, study: str | None = None) -> str | None:
         target = name.lower() if name.lower() in TARGETS else "acceptance"
         return f"its results would go to results/{name}, which the target {target} writes"
     if name == study:
-        return f"its results would go to results/{name}, where the study '{study}' is"
+        return f"its results would go to results/{name}, the folder of the study '{study}'"
     if re.search(UNUSABLE, name):
         return f"'{name}' can not be the name of a folder of results"
     return None

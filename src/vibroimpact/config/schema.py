@@ -140,7 +140,7 @@ class Grid(Section):
 
 
 class Sensors(Section):
-    """What the simulation records, at named points: displacement and acceleration."""
+    """The recorded quantities, at named points: displacement and acceleration."""
 
     points: Annotated[tuple[Name, ...], Not_empty] = Field(
         description="Named points.", examples=[["apex", "bend_45"]]
@@ -168,7 +168,7 @@ class ShapeLine(Section):
 
 
 class RecordKeys(Section):
-    """What is recorded of a case, and how it is sampled."""
+    """The record of a case, and its sampling."""
 
     duration_s: Duration_s = Field(
         49.0, description="Duration of the record, after the start-up.", examples=[49.0]
@@ -248,7 +248,7 @@ class Broadband(Section):
 
 
 class Identification(Section):
-    """Where the methods look for the equivalent support of a tube under a broadband force."""
+    """The search of the methods for the equivalent support of a tube under a broadband force."""
 
     response_point: Name = Field(
         description="Recorded point whose PSD shows the main peak.", examples=["apex"]
@@ -284,7 +284,7 @@ class Overlay(Section):
 
     campaign: str | None = Field(
         None,
-        description="File of a measured campaign, from the folder where the study is run; null for"
+        description="Path of a measured campaign from the folder of the run; null for"
         " a synthetic one.",
         examples=["campaigns/mine.nc"],
     )
@@ -349,7 +349,7 @@ class Config(Section):
     points: dict[Name, Position] = Field(
         {},
         description="Names for positions on a tube, each within 5 mm of the centreline. Other"
-        " structures bring their own points: of these, where they are, which a comparison with"
+        " structures bring their own points: of these, the positions, which a comparison with"
         " measurements needs.",
         examples=[{"apex": [0.0, 0.0, 1.0]}],
     )
@@ -357,7 +357,7 @@ class Config(Section):
     basis: Basis = Field(Basis(), description="The reduced model.")
     integration: Integration = Field(Integration(), description="The integration in time.")
     grid: Grid = Field(description="Loads, gaps and seeds.")
-    record: RecordKeys = Field(description="What is recorded.")
+    record: RecordKeys = Field(description="The record of a case.")
     spectra: Spectra = Field(Spectra(), description="Spectral estimation.")
     identification: Identification | None = Field(
         None,

@@ -41,7 +41,7 @@ def wall_that_wears(structure: Structure, wear: Wear) -> Problems:
 
 
 def wear_needs_statistics(record: RecordKeys, wear: Wear) -> Problems:
-    """Yield a problem where records hold single steps, which have no work rates."""
+    """Yield a problem if records hold single steps, which have no work rates."""
     if record.every_step:
         yield "record.every_step", True, "gives no wear work rate: leave it out, or wear"
 
@@ -96,7 +96,7 @@ def fluids(structure: Tube) -> Problems:
             continue
         low, high = centreline.stretch(fluid.from_m, fluid.to_m, place)
         if high - low <= SAME_PLACE_M:
-            yield f"{place}.to_m", fluid.to_m, "is where the fluid begins: give another position"
+            yield f"{place}.to_m", fluid.to_m, "is the start of the fluid: give another position"
         for side, other_low, other_high in taken:
             if side == fluid.kind and low < other_high and other_low < high:
                 yield place, fluid.kind, f"overlaps another fluid {side}: give them apart"

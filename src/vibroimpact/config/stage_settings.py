@@ -14,8 +14,8 @@ class StageSettings(Mapping[str, Any]):
 
     values: {key: value}, as stage_keys.stage_params gives them; a dotted key such as
     "record.duration_s" fills one part of a section.
-    Reading a key that was not given raises AttributeError (KeyError as a mapping). The message says
-    where a stage declares its keys.
+    Reading a key that was not given raises AttributeError (KeyError as a mapping). The message
+    states the place in which a stage declares its keys.
     """
 
     def __init__(self, values: Mapping[str, Any], place: str = ""):

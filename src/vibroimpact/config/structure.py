@@ -52,7 +52,7 @@ class Mesh(Section):
         Whole, Range("80 elements per bend is the stated mesh", at_least=1, at_most=2000)
     ] = Field(
         80,
-        description="Elements of each bend. Where supports cut the bend, its parts share the"
+        description="Elements of each bend. If supports cut the bend, its parts share the"
         " elements by length.",
         examples=[80],
     )
@@ -164,9 +164,7 @@ class Path(Section):
 class Mass(Section):
     """A mass of a chain. It moves along x."""
 
-    name: Name = Field(
-        description="Name of the mass, and of the point where it is.", examples=["mass"]
-    )
+    name: Name = Field(description="Name of the mass, and of its point.", examples=["mass"])
     mass_kg: Mass_kg = Field(description="Mass.", examples=[1.0])
 
 
@@ -200,7 +198,7 @@ MATRIX_FILE = (
 class Matrices(Section):
     """A structure given by its matrices in SI units, in files of NumPy (.npz), MATLAB (.mat),
     MatrixMarket (.mtx) or Nastran (.op4). The matrices are square, symmetric, real and of the same
-    size. Paths are relative to the folder where the study is run.
+    size. Paths are relative to the folder in which the study is run.
     """
 
     kind: Literal["matrices"] = Field(description="This kind of structure.", examples=["matrices"])
@@ -225,15 +223,15 @@ class Matrices(Section):
         Annotated[
             str,
             Pattern(
-                "a set of Nastran, with its number where the file holds several of them, as aa2",
+                "a set of Nastran, with its number if the file holds several of them, as aa2",
                 r"(gg|nn|ff|aa|ll|xx)([1-9]\d?)?",
             ),
         ]
         | None
     ) = Field(
         None,
-        description="Which matrices of an OP4 file are read where several would do: the set of"
-        " Nastran, `gg`, `nn`, `ff`, `aa`, `ll` or `xx`, and its number where the file holds the"
+        description="Which matrices of an OP4 file are read if several would do: the set of"
+        " Nastran, `gg`, `nn`, `ff`, `aa`, `ll` or `xx`, and its number if the file holds the"
         " matrices of several structures, as `aa2` of the second.",
         examples=["aa2"],
     )
@@ -263,7 +261,7 @@ class MeasuredMode(Section):
     ] = Field(description="Damping ratio, as a fraction.", examples=[0.02])
     shape: dict[Name, dict[Axis, Annotated[Number, Unit("kg^-1/2")]]] = Field(
         description="Mode shape: for each named point, its displacement along x, y or z, scaled to"
-        " unit modal mass. What is left out is 0.",
+        " unit modal mass. Other displacements are 0.",
         examples=[{"tip": {"x": 0.31}}],
     )
     residual: bool = Field(

@@ -63,19 +63,19 @@ class PointMass(Section):
     """A mass added at a named point of the structure. It has no rotary inertia."""
 
     name: Name = Field(description="Name of the mass.", examples=["accelerometer"])
-    point: Name = Field(description="Named point where it sits.", examples=["apex"])
+    point: Name = Field(description="Named point of the mass.", examples=["apex"])
     mass_kg: Mass_kg = Field(description="Mass.", examples=[0.02])
 
 
 class Support(Section):
     """A gap support: contact points evenly spaced over its height, both edges included; a single
-    contact point is at the middle. What reaches past an end of the tube is cut there.
+    contact point is at the middle. A part that reaches past an end of the tube is cut there.
 
     On a tube, give at_m and height_m. On any other structure, give point, and other_point if the
     support is between two points; it then has one contact point. The two transverse directions of a
     support on a tube are perpendicular to the tube: the two global axes least aligned with the
-    tube, in the order x, y, z, made perpendicular to it. They are x and y where the tube runs along
-    z, y and z where it runs along x, x and z where it runs along y. On a bend they are those at the
+    tube, in the order x, y, z, made perpendicular to it. They are x and y if the tube runs along
+    z, y and z if it runs along x, x and z if it runs along y. On a bend they are those at the
     middle of the support, made perpendicular to the tube at each contact point. On any other
     structure they are x and y.
     """
@@ -165,7 +165,7 @@ class Support(Section):
     )
     hertz_N_per_m15: Non_negative = Field(
         0.0,
-        description="Coefficient H of a Hertzian contact, total of the support: where it is not 0,"
+        description="Coefficient H of a Hertzian contact, total of the support: if it is not 0,"
         " the elastic force is H p^1.5 in place of k p. It is shared by the contact points as the"
         " stiffness is.",
         examples=[1.0e9],
@@ -190,7 +190,7 @@ class LocalElement(Section):
     """A force law along one direction, between a named point and the ground or between two named
     points.
 
-    With u the displacement of point along the direction (relative to other_point where there is
+    With u the displacement of point along the direction (relative to other_point if there is
     one) and v its rate, the force on the point is -(k u + q u² + c u³ + d v + e |v| v) minus the
     forces of the slider and of the saturating spring; d v may have a limit. Terms that are 0 are
     left out.

@@ -56,7 +56,7 @@ class Stretch(Ends):
 
     factor: Positive_factor = Field(
         1.0,
-        description="Force per length on this stretch over that of the spectrum. Where the flow has"
+        description="Force per length on this stretch over that of the spectrum. If the flow has"
         " another speed it is density times velocity² over those of the spectrum.",
         examples=[0.25],
     )

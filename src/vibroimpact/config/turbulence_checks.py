@@ -1,4 +1,4 @@
-"""The checks of a turbulent force: where it acts, its direction, its band and its spectrum. Each
+"""The checks of a turbulent force: its stretches, its direction, its band and its spectrum. Each
 yields (place, value, text), see checks.
 """
 
@@ -66,7 +66,7 @@ def stretches_of_flow(structure: Tube, given: Sequence[Any], section: str) -> Pr
             yield (
                 f"{section}.stretches[{other}]",
                 list(given[other].from_m),
-                f"overlaps stretches[{one}]: let one end where the other begins",
+                f"overlaps stretches[{one}]: let one end at the start of the other",
             )
 
 

@@ -47,7 +47,7 @@ PLAIN_WORDS = (
     ("is ambiguous", "{problem}"),
     ("can not be read", "{problem}"),
     ("found unhashable key", "a list or a block as a key: write a text before the colon"),
-    ("found undefined alias", "an alias (*name) without its anchor: write &name where it is meant"),
+    ("found undefined alias", "an alias (*name) without its anchor: write &name at its definition"),
     (
         "cannot start any token",
         "a character that can not begin a value: put the text in quotes",
@@ -62,14 +62,14 @@ def read_yaml(path: str | os.PathLike[str]) -> dict[str, Any]:
 
     Raises ConfigError when the file can not be read, is no UTF-8 text, is not YAML, holds a key
     twice or no keys at all, is larger than a configuration can be (see yaml_loader), or asks for
-    templates, which run code. The sentence gives the line and the column where there is one.
+    templates, which run code. The sentence gives the line and the column if there is one.
     """
     data = _parsed(path, _text(path, _content(path)))
     if not isinstance(data, dict):
         raise ConfigError([f"{path}: holds no keys: write each as `key: value`"])
     if TEMPLATES in data:
         raise ConfigError(
-            [f"{path}: {TEMPLATES} would run what the file holds as a program: remove the key"]
+            [f"{path}: {TEMPLATES} would run the content of the file as a program: remove the key"]
         )
     return data
 
@@ -120,7 +120,7 @@ def _text(path: str | os.PathLike[str], raw: bytes) -> str:
 
 
 def _parsed(path: str | os.PathLike[str], text: str) -> Any:
-    """Return what a YAML text holds. Raises ConfigError."""
+    """Return the content of a YAML text. Raises ConfigError."""
     try:
         loader = PlainLoader(text)
     except ReaderError as error:
@@ -151,7 +151,7 @@ def _line_and_column(before: str) -> str:
 
 
 def _in_plain_words(error: yaml.MarkedYAMLError) -> str:
-    """Return what is wrong at the place of an error, and the remedy."""
+    """Return the fault at the place of an error, and the remedy."""
     problem, context = error.problem or "", error.context or ""
     if context in OPENED and error.context_mark and problem.startswith("expected"):
         what, opening, closing = OPENED[context]

@@ -1,1 +1,1 @@
-"""Supports and local elements: where they act, and their force laws."""
+"""Supports and local elements: their places, and their force laws."""

@@ -19,7 +19,7 @@ class ContactLaws:
     gap: m; NaN for the case's gap times the point's gap_factor.
     damping: N s/m; the force is max(0, k p + damping dp/dt).
     hunt_crossley: s/m; the force is k p max(0, 1 + hunt_crossley dp/dt).
-    hertz: N/m^1.5; where it is not 0, the force is hertz p^1.5 instead of k p.
+    hertz: N/m^1.5; if it is not 0, the force is hertz p^1.5 instead of k p.
     friction: Coulomb coefficient.
     stick_stiffness: N/m, of the elastic stick spring of the friction.
     lobes, lobe_depth (m), lobe_angle (rad): the obstacle is
@@ -74,7 +74,7 @@ class ContactLaws:
                 )
         if (self.friction > 0.0)[self.stick_stiffness <= 0.0].any():
             raise ValueError(
-                "contact law stick_stiffness must be positive where there is friction: give about"
+                "contact law stick_stiffness must be positive if there is friction: give about"
                 " the contact stiffness"
             )
         if np.shape(self.land_normal) != (len(self.land_point), 2) or (
@@ -119,12 +119,12 @@ POINT_COLUMNS = tuple(
 class LocalLaws:
     """The terms of the local elements; every array is (element,).
 
-    With u the displacement along the element (relative where it has two ends) and v its rate, the
+    With u the displacement along the element (relative if it has two ends) and v its rate, the
     force on the structure is
 
         -(stiffness u + quadratic u² + cubic u³ + damper + drag |v| v + slider + saturation).
 
-    The damper is damping v, held within ±damping_limit where that is not 0.
+    The damper is damping v, held within ±damping_limit if that is not 0.
 
     The slider is an elastic stick spring of stick_stiffness that slips at slip_limit. The
     saturation is clip(saturation_stiffness u, ±saturation_limit).

@@ -42,13 +42,13 @@ def radial_gap(profile: ConfigPart, gap_m: float, angle: np.ndarray) -> np.ndarr
 def free_space_outline(
     profile: ConfigPart, gap_m: float, reach_m: float | None = None
 ) -> np.ndarray:
-    """Return (point, 2) m: the closed outline of where the tube's centre moves without contact.
+    """Return (point, 2) m: the closed outline of the free space of the tube's centre.
 
     profile, gap_m: as in radial_gap.
-    reach_m: where stops leave a side open, the outline ends on a square of this half side; 3 gaps
+    reach_m: if stops leave a side open, the outline ends on a square of this half side; 3 gaps
         by default.
 
-    It runs counter-clockwise and ends where it begins; it has no points where stops leave no space.
+    It runs counter-clockwise and ends at its start; it has no points if stops leave no space.
     """
     if profile.kind == "planes":
         return _between_stops(profile.normals_deg, gap_m, reach_m or OPEN * abs(gap_m) or 1e-3)
@@ -66,7 +66,7 @@ def hole_outline(
     """Return (point, 2) m: the closed outline of the hole that a tube of a radius passes through.
 
     profile, gap_m: as in radial_gap.
-    scale: factor of gap and lobes, to make them visible beside the tube.
+    scale: factor of gap and lobes, to make them visible next to the tube.
     reach_m: as in free_space_outline.
 
     It is the free space, scaled, moved outward by the radius: a flat stop by its normal, a curved

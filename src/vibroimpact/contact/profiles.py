@@ -1,4 +1,4 @@
-"""Where the lands of a support's profile are, across the tube at a contact point.
+"""The places of the lands of a support's profile, across the tube at a contact point.
 
 A profile of any kind resolves to flat lands, each with its normal, or to a circle with lobes.
 

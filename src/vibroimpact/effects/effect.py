@@ -1,4 +1,4 @@
-"""What an effect of the catalogue is: a change of a configuration, with parameters that have units,
+"""An effect of the catalogue: a change of a configuration, with parameters that have units,
 bounds and a neutral value.
 """
 
@@ -30,7 +30,7 @@ SCALES = {
     "gap_force": "the force that closes the clearance",
     "mass": "the modal mass of the first mode at the drive point",
     "mass_per_length": "that modal mass over the length of the structure",
-    "searched_length": "the part of the tube where it is searched",
+    "searched_length": "the searched part of the tube",
     "tube_translation": "the static stiffness at the drive point",
     "tube_rotation": "that stiffness times a hundredth of the squared length",
     "tube_damping": "the modal damping constant of the first mode at the drive point",
@@ -61,12 +61,12 @@ FAMILIES = (
 class Parameter:
     """A parameter of an effect.
 
-    meaning: what it is, in words.
+    meaning: its description in words.
     low, high: bounds, as multiples of the size that `per` names in SCALES.
     neutral: value in SI at which the effect vanishes, None if there is no such value.
     log: whether it is searched in its logarithm.
-    over: another parameter of the effect; this one is searched as a multiple of it, where their
-        ratio sets what is seen.
+    over: another parameter of the effect; this one is searched as a multiple of it, if their
+        ratio sets the response.
     gain_power: a gain common to force and responses scales lengths; the value that explains the
         records grows with this power of it.
     """
@@ -88,20 +88,20 @@ class Effect:
     """An entry of the catalogue.
 
     family: one of FAMILIES.
-    explanation: what it is, in a clause.
+    explanation: its description in a clause.
     law: its equation, or the equation in words; p: indentation of a contact, u: displacement.
-    source: where the law comes from.
+    source: the origin of the law.
     apply(values, parameters, location): the configuration with the effect; values are not changed;
         parameters {name: value in SI}; None if the effect acts on the measurement.
-    locations(values): names of the places where the effect may act.
+    locations(values): names of the places at which the effect may act.
     broken: keys of TESTS, the invariances that the effect breaks.
     aliases: ids of effects with a similar signature.
     linear: it changes the linear structure, also below contact.
     below_contact: it is nonlinear and acts without contact, so that it resembles a linear effect.
     measured: it changes the measurement, not the model.
-    needs: what the campaign must hold: "force", measured at a point of the structure, "voltage".
-    called: its name where that is not the words of its id.
-    law_of: id of the effect under which this one is reported, where it is another law of it.
+    needs: quantity that the campaign must hold: "force" at a point of the structure, "voltage".
+    called: its name if that is not the words of its id.
+    law_of: id of the effect under which this one is reported, if it is another law of it.
     """
 
     id: str
@@ -123,12 +123,12 @@ class Effect:
 
     @property
     def name(self) -> str:
-        """Return the name that a reader is told: Hunt-Crossley damping."""
+        """Return the name in words: Hunt-Crossley damping."""
         return self.called or self.id.replace("_", " ")
 
     @property
     def acts_on(self) -> str:
-        """Return the one of WHERE that says what the effect acts on."""
+        """Return the part that the effect acts on, one of WHERE."""
         if self.measured:
             return "measurement"
         if self.linear:

@@ -8,7 +8,7 @@ LARGEST = 0.29
 
 def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with all modal damping ratios multiplied by a factor, to LARGEST at
-    most where they are not larger already.
+    most if they are not larger already.
     """
     damping, factor = dict(values["damping"]), parameters["factor"]
 

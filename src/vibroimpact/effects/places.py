@@ -1,4 +1,4 @@
-"""Where an effect may sit: supports, and named points on the tube that an effect adds to a
+"""The places of an effect: supports, and named points on the tube that an effect adds to a
 configuration.
 """
 
@@ -135,8 +135,8 @@ def with_mass(values: Values, name: str, point: str, mass_kg: float) -> Values:
 
 
 def between(arc_length_m: float, turned_deg: float | None = None) -> str:
-    """Return the location of a place on a tube; turned_deg: of what acts there in a direction that
-    is turned from that of the force, see across.
+    """Return the location of a place on a tube; turned_deg: of an effect that acts there in a
+    direction that is turned from that of the force, see across.
     """
     place = f"arc_{1e3 * arc_length_m:.1f}mm"
     if turned_deg is not None:
@@ -158,7 +158,7 @@ def turned_deg(location: str) -> float | None:
 
 
 def _numbers(location):
-    """Return (mm, deg) of a place that `between` named, None for what it does not tell."""
+    """Return (mm, deg) of a place that `between` named, None for a part that it does not give."""
     named = BETWEEN.fullmatch(location)
     texts = named.groups() if named else (None, None)
     try:
@@ -172,7 +172,7 @@ def _numbers(location):
 
 
 def place_in_words(location: str) -> str:
-    """Return a location as a reader is told it: a place that no point names by where it is."""
+    """Return a location in words: a place that no point names by where it is."""
     arc_length, angle = arc_length_m(location), turned_deg(location)
     if arc_length is None:
         return IN_WORDS.get(location) or MODE.sub(r"mode \1", location)
@@ -217,7 +217,7 @@ def with_place(values: Values, location: str) -> Values:
 def with_entry(values: Values, key: str, name: str, entry: Values) -> Values:
     """Return the configuration with an entry added to elements or masses.
 
-    It is called name, or name_2 and so on where an effect is added to a model that has it.
+    It is called name, or name_2 and so on if an effect is added to a model that has it.
     """
     taken = {other["name"] for other in values[key]}
     names = (name if number == 1 else f"{name}_{number}" for number in count(1))
@@ -228,7 +228,7 @@ def with_entry(values: Values, key: str, name: str, entry: Values) -> Values:
 def across(values: Values, point: str) -> Sequence[float]:
     """Return the direction of an element at a point: that of the force; on a tube, as the motion
     that the force drives there: carried from the drive point along the tube, perpendicular to it,
-    and turned about the tube's axis where the point is one of `between` with an angle.
+    and turned about the tube's axis if the point is one of `between` with an angle.
     """
     if values["structure"]["kind"] not in TUBES:
         return values["excitation"]["direction"]
@@ -285,7 +285,7 @@ ALONG_IT = 1.0e-6  # sine of the angle between a force and the tube that it pull
 
 def _carried(values, point):
     """Return (3,): the direction of the force, turned with a tube from the drive point, or from
-    `point` where there is none; of a force along the tube, the first direction across it.
+    `point` if there is none; of a force along the tube, the first direction across it.
     """
     line = _centreline(values)
     drive = values["excitation"].get("point") or point

@@ -46,7 +46,7 @@ EFFECTS: dict[str, Effect] = {
 
 
 def effects_in_words(ids: Iterable[str]) -> str:
-    """Return effects as a reader is told them: dry friction and Hertz contact."""
+    """Return effects in words: dry friction and Hertz contact."""
     return " and ".join(
         EFFECTS[name].name if name in EFFECTS else str(name).replace("_", " ") for name in ids
     )

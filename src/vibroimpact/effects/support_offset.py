@@ -1,4 +1,4 @@
-"""A support whose centre is not where the tube is."""
+"""A support whose centre is off the axis of the tube."""
 
 from . import places
 from .effect import Effect, Parameter, Values

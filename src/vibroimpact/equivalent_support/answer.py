@@ -1,4 +1,4 @@
-"""The answer to "which k and c": per group of supports and direction, with what it rests on."""
+"""The answer to "which k and c": per group of supports and direction, with its basis."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from vibroimpact.study.reasons import NOT_MOVED
 
 
 class EquivalentError(Exception):
-    """A question that has no answer; the message says why and what to do."""
+    """A question that has no answer; the message states the reason and the remedy."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Span:
 
 @dataclass(frozen=True)
 class MethodAnswer:
-    """What one method says: k in N/m and c in N s/m per support."""
+    """The values of one method: k in N/m and c in N s/m per support."""
 
     method: str
     k: Span
@@ -46,15 +46,15 @@ class GroupAnswer:
     k, c: recommended values, N/m and N s/m per support.
     agreement_k, agreement_c: of the compared methods, one of method_agreement.VERDICTS; "" for an
         estimate.
-    reason_k, reason_c: why there is no value, or what is to be known of it; mostly "".
-    bound: N/m, what k is below where it does not differ from 0; NaN otherwise.
-    flag: what makes the values of the study doubtful, or "".
-    anyway: the one method whose value was asked for where there is no recommended one, or "".
+    reason_k, reason_c: why there is no value, or a remark on it; mostly "".
+    bound: N/m, the upper bound of k if it does not differ from 0; NaN otherwise.
+    flag: the doubts about the values of the study, or "".
+    anyway: the one method whose value was asked for if there is no recommended one, or "".
     secant_k, secant_c: of the contact forces themselves, NaN if not known.
-    methods: what each method says.
-    how: where the values come from, a sentence.
+    methods: the values of each method.
+    how: the origin of the values, a sentence.
     agreeing: the nearest range of load over gap, in N/m, over which the methods agree on k; of the
-        load in N where the model is not homogeneous; None if they agree nowhere.
+        load in N if the model is not homogeneous; None if they agree nowhere.
     """
 
     group: str
@@ -100,7 +100,7 @@ class Answer:
 
     study: name of the study, or of the configuration that was estimated.
     kind: "study" or "estimate".
-    load_rms_N, gap_m: what was asked, N RMS and m.
+    load_rms_N, gap_m: those asked for, N RMS and m.
     homogeneous: whether k depends on load over gap alone.
     notes: sentences that belong to the values.
     """
@@ -115,7 +115,7 @@ class Answer:
 
     @property
     def unresolved(self) -> list[str]:
-        """Return a sentence for every k and c without a value where the force moves.
+        """Return a sentence for every k and c without a value along moved directions.
 
         An upper bound of k is an answer.
         """
@@ -161,12 +161,12 @@ class Answer:
         )
 
     def anyway(self, method: str) -> Answer:
-        """Return the answer with the values of one method where there is no recommended one."""
+        """Return the answer with the values of one method if there is no recommended one."""
         return replace(self, groups=tuple(_with_values_of(group, method) for group in self.groups))
 
 
 def _with_values_of(group: GroupAnswer, method: str) -> GroupAnswer:
-    """Return a group's answer with the values of a method where it has none and no bound."""
+    """Return a group's answer with the values of a method if it has none and no bound."""
     own = next((item for item in group.methods if item.method == method), None)
     if own is None or group.bounded or (group.k.resolved and group.c.resolved):
         return group

@@ -47,7 +47,7 @@ PARTIAL = {"k": "two of three resolve it", "c": "one of two resolves it"}
 
 
 def as_text(answer: Answer) -> str:
-    """Return an answer as text: per group the values, each method, and where they come from."""
+    """Return an answer as text: per group the values, each method, and their origin."""
     what = "Estimate without a simulation for" if answer.kind == "estimate" else "Study"
     level = f" (load over gap {answer.load_rms_N / answer.gap_m:.3g} N/m)"
     head = (
@@ -96,7 +96,7 @@ def _group_text(group: GroupAnswer, homogeneous: bool) -> str:
 
 
 def _agreement_text(group: GroupAnswer, homogeneous: bool) -> str:
-    """Return where the methods agree on k."""
+    """Return the range in which the methods agree on k."""
     if group.agreeing is None:
         return "The methods agree on k nowhere in the study."
     unit = "N/m of load over gap" if homogeneous else "N RMS"
@@ -163,6 +163,6 @@ def as_csv(answer: Answer) -> str:
 
 
 def as_plain(answer: Answer) -> dict[str, Any]:
-    """Return an answer as JSON knows values, with its warnings; what is not resolved is null."""
+    """Return an answer as JSON knows values, with its warnings; unresolved values are null."""
     plain: dict[str, Any] = plain_values(asdict(answer) | {"warnings": answer.warnings})
     return plain

@@ -1,4 +1,4 @@
-"""The command `vibroimpact equivalent`: its arguments, and what it prints and writes.
+"""The command `vibroimpact equivalent`: its arguments, its output and its files.
 
 The library is imported when the command runs, so that `--help` answers at once.
 """
@@ -44,7 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--config",
         metavar="FILE",
-        help="configuration: of what is estimated, or of a study whose model.nc is not there",
+        help="configuration: of the estimate, or of a study without model.nc",
     )
     parser.add_argument(
         "--estimate",
@@ -55,7 +55,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--anyway",
         choices=("lscf", "ods", "broadband"),
         metavar="METHOD",
-        help="where the methods differ or too few resolve a value, take that of one of them (lscf,"
+        help="if the methods differ or too few resolve a value, take that of one of them (lscf,"
         " ods, broadband); a warning stands at the head of every export",
     )
     form = parser.add_mutually_exclusive_group()
@@ -153,7 +153,7 @@ def _answer(options: argparse.Namespace) -> tuple[Answer, ModalModel]:
 
 
 def _printed(options: argparse.Namespace, answer: Answer) -> str:
-    """Return what the command prints."""
+    """Return the text that the command prints."""
     import json
 
     from .answer_text import as_csv, as_plain, as_text
@@ -166,7 +166,7 @@ def _printed(options: argparse.Namespace, answer: Answer) -> str:
 def _write_export(
     options: argparse.Namespace, answer: Answer, model: ModalModel
 ) -> tuple[str, ...]:
-    """Write the export. Return what was left out of it. Raises EquivalentError."""
+    """Write the export. Return its omissions. Raises EquivalentError."""
     from vibroimpact.io.records import write_text
 
     from .answer import EquivalentError

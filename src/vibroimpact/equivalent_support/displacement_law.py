@@ -2,9 +2,9 @@
 
 The equivalent support of a rattling tube is about the one that holds a linear tube to a motion of
 the gap. The law makes this a number: on the support k, the linear tube with its modal damping alone
-would move `held` gaps RMS at its plates, where the tube without supports would move `level` gaps.
+would move `held` gaps RMS at its plates, if the tube without supports would move `level` gaps.
 `held` against `level` is taken from one study, and k of another tube then follows from its own
-linear response. It approaches `level` where the tube hardly touches (k = 0), and about 1.5 where it
+linear response. It approaches `level` if the tube hardly touches (k = 0), and about 1.5 if it
 rattles. The damping is given as a loss factor, c omega / k with omega the first frequency on k.
 """
 

@@ -97,7 +97,7 @@ def _require_inside(shipped: ShippedLaw, level: float, load_rms_N: float) -> Non
 
 
 def _notes(model: ModalModel, shipped: ShippedLaw, error: dict[str, float]) -> tuple[str, ...]:
-    """Return what is to be said about the estimate."""
+    """Return the remarks on the estimate."""
     every = shipped.errors[-1]
     notes = [
         "This is an estimate from a law, not a result: run the study for one. The law was compared"

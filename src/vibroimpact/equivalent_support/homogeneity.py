@@ -29,7 +29,7 @@ ELEMENT_TERMS = {
 
 
 def effects_with_a_scale(model: ModalModel) -> list[str]:
-    """Return what makes a model inhomogeneous, one phrase each; none for a homogeneous one."""
+    """Return the parts that make a model inhomogeneous, one phrase each."""
     laws = model.contact_laws
     with np.errstate(invalid="ignore"):
         fixed_gap = np.isfinite(laws.gap) & (laws.gap != 0.0)

@@ -42,7 +42,7 @@ def read_at(
 ) -> Reading:
     """Return the Reading of a level: linear in the logarithm of the level within each gap.
 
-    A gap counts where the level lies between two of its loads that are both resolved. The value is
+    A gap counts if the level lies between two of its loads that are both resolved. The value is
     the median over the gaps that count, and the interval the hull of theirs. It needs at least half
     of the gaps that reach the level; fewer would be a chance selection.
 

@@ -1,4 +1,4 @@
-"""The law that ships with the package: what it was fitted on, and how wrong it was elsewhere.
+"""The law that ships with the package: its origin, and its errors on other tubes.
 
 displacement_law.json and its measured errors, displacement_law_errors.csv, are made by the target
 `equivalent_law` of the workflow from the default study and from the tubes of
@@ -30,7 +30,7 @@ REGIONS = ((0.5, 1.5), (1.5, 6.0), (6.0, 30.0))
 class ShippedLaw:
     """A law with its measured errors.
 
-    origin: where the law comes from.
+    origin: of the law.
     errors: rows of law_errors.error_rows, ascending, the last one over all levels.
     """
 

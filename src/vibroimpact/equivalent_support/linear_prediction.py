@@ -1,4 +1,4 @@
-"""Comparison of the equivalent linear tube with the non-linear one where nothing was fitted."""
+"""Comparison of the equivalent linear tube with the non-linear one, in cases not fitted."""
 
 from __future__ import annotations
 
@@ -251,7 +251,7 @@ def compared_row(quantity: str, of: str, unit: str, linear: float, seeds: Sequen
 def summary_rows(rows: Sequence[dict]) -> list[dict]:
     """Return rows per geometry, law, quantity and regime: median and worst error in dB.
 
-    usable: "yes" where every case is within 2 dB, "with care" where the median is, else "no".
+    usable: "yes" if every case is within 2 dB, "with care" if the median is, else "no".
     """
     groups: dict[tuple, list[float]] = {}
     for row in rows:

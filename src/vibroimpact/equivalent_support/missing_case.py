@@ -1,4 +1,4 @@
-"""What to say where a study does not reach: the nearest case, and how to add the one wanted."""
+"""The answer outside the grid of a study: the nearest case, and how to add the one wanted."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def require_metres(gap_m: float, gaps_m: Sequence[float]) -> None:
     low, high = min(gaps_m) / OTHER_UNIT, max(gaps_m) * OTHER_UNIT
     if gap_m > high and low <= gap_m * MM <= high:
         raise EquivalentError(
-            f"the gap is {gap_m:g} m where those of the grid are {min(gaps_m):g} to"
+            f"the gap is {gap_m:g} m, those of the grid are {min(gaps_m):g} to"
             f" {max(gaps_m):g} m: gaps are in metres, {gap_m:g} mm is {gap_m * MM:g}"
         )
 
@@ -35,7 +35,7 @@ def require_metres(gap_m: float, gaps_m: Sequence[float]) -> None:
 def no_study_sentence(study: str | Path, tables: Sequence[Path]) -> str:
     """Return the sentence for a study that is not there: those there are, or how to make one.
 
-    tables: where one of its tables was looked for; the last one below results/.
+    tables: the paths searched for its tables; the last one below results/.
     """
     places = " nor ".join(map(str, tables))
     sentence = f"'{study}' is no finished study: neither {places} is there. "

@@ -35,7 +35,7 @@ class EquivalentLaw:
     c: np.ndarray
 
     def at(self, level: float) -> tuple[float, float]:
-        """Return (k, c) at a level, (0, 0) where the tube is free."""
+        """Return (k, c) at a level, (0, 0) if the tube is free."""
         if level < self.level[0]:
             return 0.0, 0.0
         x = np.log(level)

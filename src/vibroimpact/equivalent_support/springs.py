@@ -36,10 +36,10 @@ class PointSpring:
 
 @dataclass(frozen=True)
 class SpringSet:
-    """All springs of an answer, and what was left out.
+    """All springs of an answer, and the omissions.
 
     warnings: sentences that no reader of a file may miss. notes: more for its head.
-    left_out: sentences for what is not resolved and therefore not among the springs.
+    left_out: sentences on values that are not resolved and therefore not among the springs.
     """
 
     springs: tuple[PointSpring, ...]
@@ -55,13 +55,13 @@ def point_springs(
 
     The k and c of a support are shared by its contact points with their weights, in both
     transverse directions, as in the linear tube that the methods compare with (linear.modes).
-    What is not resolved is left out.
+    Unresolved values are left out.
 
     points: "each" for every contact point, "one" for a single spring at the middle of a support.
     across: "same" gives a transverse direction that the force of the study does not move the k and
         c of the other one; "none" leaves it free. Parallel stops act along their normal alone.
 
-    Where k has only an upper bound there is no spring, and a note says so.
+    If k has only an upper bound there is no spring, and a note says so.
 
     Raises EquivalentError if no k is resolved or bounded, or the structure has no positions in
     space.
@@ -158,7 +158,7 @@ def _value(span: Span) -> float | None:
 
 
 def _notes(answer: Answer, across: str) -> tuple[str, ...]:
-    """Return what the head of a file says."""
+    """Return the head of a file."""
     kind = "ESTIMATE from a law, without a simulation" if answer.kind == "estimate" else "study"
     notes = [
         f"Equivalent supports of {kind} '{answer.study}' at {answer.load_rms_N:g} N RMS and a gap"

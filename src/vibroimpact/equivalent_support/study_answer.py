@@ -35,7 +35,7 @@ def equivalent(
 ) -> Answer:
     """Return the Answer of a finished study at a load and a gap.
 
-    Where the model is homogeneous of degree one, k and c depend on load over gap alone: they are
+    If the model is homogeneous of degree one, k and c depend on load over gap alone: they are
     interpolated over it, from every gap of the study that reaches there. Otherwise they are
     interpolated over the load, at a gap of the study. Nothing is extrapolated.
 
@@ -43,7 +43,7 @@ def equivalent(
     load_rms_N: RMS of the force in N. gap_m: radial gap in m.
     model: reduced model of the study; that of its model.nc by default.
 
-    Raises EquivalentError if there is no answer; the message says what to do.
+    Raises EquivalentError if there is no answer; the message states the remedy.
     """
     folder = study_folder(study)
     _require_positive(load_rms_N, gap_m)
@@ -90,7 +90,7 @@ def equivalent(
 
 
 class _Asked:
-    """What was asked: load in N, gap in m, and the level that the tables are read at."""
+    """The question: load in N, gap in m, and the level that the tables are read at."""
 
     def __init__(
         self,
@@ -104,7 +104,7 @@ class _Asked:
         self.level, self.level_of, self.homogeneous = level, level_of, homogeneous
 
     def rows_of(self, rows: Rows) -> Rows:
-        """Return the rows of the very case where the study has it, else all rows."""
+        """Return the rows of the very case if the study has it, else all rows."""
         same = [
             row
             for row in rows
@@ -145,7 +145,7 @@ def members(group: str, direction: str, model: ModalModel) -> tuple[str, ...]:
 
     group: "all", the name of a support, or names joined by "+", as in plate_1+plate_2.
 
-    Raises EquivalentError for a name that is no support, and where none acts in the direction.
+    Raises EquivalentError for a name that is no support, and if none acts in the direction.
     """
     wanted = model.support_names
     if group != "all":
@@ -254,8 +254,8 @@ def _agreement(reading: Reading, name: str) -> str:
 
 
 def _reason(reading: Reading, name: str) -> str:
-    """Return why there is no value, from the first case of the study that lacks it; where there is
-    one, what is to be known of it, from the case where the methods agree least.
+    """Return why there is no value, from the first case of the study that lacks it; if there is
+    one, a remark on it, from the case in which the methods agree least.
     """
     if reading.span.resolved:
         row = max(reading.rows, key=lambda row: VERDICTS.index(row[f"agreement_{name}"]))
@@ -287,7 +287,7 @@ def _bound(reading: Reading) -> float:
 
 
 def _how(asked: _Asked, reading: Reading, rows: Rows) -> str:
-    """Return the sentence that says where a value comes from."""
+    """Return the sentence on the origin of a value."""
     if asked.rows_of(rows) is not rows:
         return f"a case of the study: {asked.load_rms_N:g} N RMS at {1e3 * asked.gap_m:.4g} mm"
     if not reading.gaps:
@@ -321,7 +321,7 @@ def _listed(words: Sequence[str]) -> str:
 
 
 def _agreeing_range(asked: _Asked, rows: Rows) -> tuple[float, float] | None:
-    """Return the range of level nearest to the one asked for where the methods agree on k."""
+    """Return the range of level nearest to the one asked for in which the methods agree on k."""
     ranges = ranges_of_agreement(rows, asked.level_of, "agreement_k")
     x = np.log(asked.level)
 
@@ -333,7 +333,7 @@ def _agreeing_range(asked: _Asked, rows: Rows) -> tuple[float, float] | None:
 
 
 def _notes(effects: list[str]) -> tuple[str, ...]:
-    """Return what is to be said about the interpolation."""
+    """Return the remarks on the interpolation."""
     if not effects:
         return ()
     return (

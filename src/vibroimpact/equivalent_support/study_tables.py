@@ -46,7 +46,7 @@ def summary_rows_of(folder: Path, direction: str) -> list[dict[str, Any]]:
 def _require_own(path: Path, rows: list[dict[str, Any]]) -> None:
     """Raise EquivalentError if a table is of another configuration than that of its folder.
 
-    Tables of before the column, and copies without a configuration beside them, are taken.
+    Tables of before the column, and copies without a configuration in their folder, are taken.
     """
     beside = path.parent / CONFIG_FILE
     if DIGEST_COLUMN not in rows[0] or not beside.is_file():
@@ -60,7 +60,7 @@ def _require_own(path: Path, rows: list[dict[str, Any]]) -> None:
 
 
 def require_tables_of(folder: Path, config: Config, source: str) -> None:
-    """Raise EquivalentError where the tables of a folder are of another configuration than one that
+    """Raise EquivalentError if the tables of a folder are of another configuration than one that
     is given. Tables of before the column are taken.
 
     source: the file of the configuration.
@@ -97,7 +97,7 @@ def recommended_rows_of(
     Columns: gap_m, load_rms_N, group, direction, flag, k_bound, contact_fraction, and of k and of
     c: value (k, c), low and high (k_low, ...), secant (secant_k, secant_c), agreement and reason
     (agreement_k, reason_k, ...). They are those of equivalent.csv, which is made of the summary
-    where the study does not have it.
+    if the study does not have it.
     """
     path = folder / RECOMMENDED
     rows = equivalent_rows(summary)

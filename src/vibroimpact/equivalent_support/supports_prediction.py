@@ -169,7 +169,7 @@ def supports_prediction_rows(
     There are those of one k and c for all, of each its own, and of the secant values of each. An
     identification from responses alone does not tell the level of the force, so that one gain of
     the input is free: gain_dB makes the mean error of the sensors in the whole band 0, in dB, and
-    error_with_gain_dB is what remains.
+    error_with_gain_dB is the rest.
 
     settings: configuration with excitation, identification and record.duration_s.
     equivalent: {ONE or EACH: rows of equivalent.csv}, both of the same cases.

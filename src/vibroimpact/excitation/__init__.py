@@ -1,1 +1,1 @@
-"""Forces: random, measured or of a formula, and where on the structure they act."""
+"""Forces: random, measured or of a formula, and their places on the structure."""

@@ -1,9 +1,9 @@
 """A random field along an arc length, correlated as exp(-|s - s'| / correlation length): the
 covariance of integrals over it, and independent forces that reproduce it.
 
-The correlation is that of a Markov process. What a stretch shares with all before it passes through
-one number per integral, its weighted part so far, and the double integral over two stretches is a
-product. Nothing needs to be resolved on the scale of the correlation length.
+The correlation is that of a Markov process. The correlation of a stretch with all before it passes
+through one number per integral, its weighted part so far, and the double integral over two
+stretches is a product. Nothing needs to be resolved on the scale of the correlation length.
 """
 
 from __future__ import annotations

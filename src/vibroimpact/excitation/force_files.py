@@ -19,7 +19,7 @@ LEAST_SHARE = 1e-3  # of the RMS of the whole force: less in the record is the r
 
 
 class ForceFileError(ForeignFileError):
-    """A force file that cannot be read; the message names it, what is wrong and the remedy."""
+    """A force file that cannot be read; the message names it, the fault and the remedy."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ def read_force(path: str | Path, variable: str, sampling_frequency: float | None
     The file brings its sampling frequency: an attribute or variable `Fs` or `sampling_frequency`,
     or times, whose unit counts (netCDF attribute `units`, CSV column "time [ms]").
 
-    sampling_frequency: Hz, for a file that has none; it must agree where the file has one.
+    sampling_frequency: Hz, for a file that has none; it must agree if the file has one.
 
     Raises ForceFileError when the file or variable is missing, its kind is unknown, it is damaged,
     it has no sampling frequency or two that differ, or holds values that are not finite, or 0

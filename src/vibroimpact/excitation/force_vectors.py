@@ -1,4 +1,4 @@
-"""Where the forces of a configuration act: force vectors over the degrees of freedom.
+"""The places of the forces of a configuration: force vectors over the degrees of freedom.
 
 A base that moves while the obstacles stay in space becomes one more mode.
 """

@@ -72,7 +72,7 @@ def resample_measured(values: np.ndarray, from_rate: float, to_rate: float) -> n
     """Return a measured record (sample,), taken as band-limited, at another rate in Hz.
 
     The FFT runs over the record between odd, tapered reflections of its ends, so that the ends do
-    not ring into each other. A few last samples are dropped where the ratio of the rates requires
+    not ring into each other. A few last samples are dropped if the ratio of the rates requires
     it.
     """
     edge = int(np.ceil(EDGE_S * from_rate))

@@ -21,7 +21,7 @@ def random_generator(entropy: int, *key: int | str) -> np.random.Generator:
 
 
 def _words(part: int | str) -> list[int]:
-    """Return the 32-bit words of a part of a key: four of its SHA-256 where it is a name."""
+    """Return the 32-bit words of a part of a key: four of its SHA-256 if it is a name."""
     if isinstance(part, str):
         digest = hashlib.sha256(part.encode()).digest()[:16]
         return [int(word) for word in np.frombuffer(digest, dtype="<u4")]

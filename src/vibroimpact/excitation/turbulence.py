@@ -1,4 +1,4 @@
-"""Turbulence on a tube: where it acts, the independent forces that replace it, its level.
+"""Turbulence on a tube: its stretches, the independent forces that replace it, its level.
 
 The force per length in one direction has the cross-spectrum S(f) exp(-|s - s'| / correlation
 length) between two arc lengths (Axisa, Antunes and Villard 1990; code_aster U4.44.31, section 3.1).

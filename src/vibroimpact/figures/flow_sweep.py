@@ -68,7 +68,7 @@ def _of(run: FlowRun, onset: Onset, start: str) -> bool:
 
 
 def _critical(sheet: Sheet, velocity: float, name: str, colour: str) -> None:
-    """Mark a critical velocity, where there is one."""
+    """Mark a critical velocity, if there is one."""
     if np.isfinite(velocity):
         axes, column = sheet.axes["response"], "flow_velocity_m_per_s"
         label = "critical velocity, linear" if name == "closed" else None

@@ -149,7 +149,7 @@ class Span:
 class Text:
     """Words at a place, which are not in the CSV.
 
-    x, y: in units of the axes; a fraction of the panel where of_panel has their letter.
+    x, y: in units of the axes; a fraction of the panel if of_panel has their letter.
     shift: in points. align: (horizontal, vertical) of matplotlib.
     """
 
@@ -168,7 +168,7 @@ class Text:
 class Map:
     """Values z (y, x) of a column as colours from low to high; a logarithmic y has even steps.
 
-    y: values, or the names of the axis. edges (x + 1,): of the cells, halfway between x where None.
+    y: values, or the names of the axis. edges (x + 1,): of the cells, halfway between x if None.
     log: whether the colours are logarithmic.
     """
 
@@ -203,7 +203,7 @@ Item = Series | Bars | Mark | Signs | Span | Text | Map | Cells
 class Panel:
     """Axes with their items, in the order in which they are drawn.
 
-    note: why the panel is empty, shown where it holds no series, bars, map or cells.
+    note: why the panel is empty, shown if it holds no series, bars, map or cells.
     right: a second vertical axis.
     legend: its place in the panel as matplotlib names it, empty for none.
     equal: whether both axes have one scale.
@@ -232,8 +232,8 @@ class ColourBar:
     """The colours of a column from low to high.
 
     curves: whether they are those of curves; those of maps else.
-    ends: "min", "max" or "both" where values lie beyond.
-    panels: that it stands below; right of all panels where empty.
+    ends: "min", "max" or "both" if values lie beyond.
+    panels: that it stands below; right of all panels if empty.
     """
 
     column: str
@@ -250,9 +250,9 @@ class Plot:
     """A figure: one or several panels.
 
     name: stem of its files.
-    title: above it. caption: what is shown and how to read it, without reference to the paper.
+    title: above it. caption: its content and how to read it, without reference to the paper.
     panels: {name: Panel}.
-    rows: of names of panels, "." for a gap; one row of all where empty.
+    rows: of names of panels, "." for a gap; one row of all if empty.
     size: (width, height) in inches.
     share: axes that all panels share: "x", "y", "xy" or none; inner ones have no labels.
     legend: columns of a legend below all panels, 0 for none.
@@ -273,7 +273,7 @@ class Plot:
 
 
 def extent(values: ArrayLike, log: bool = False, margin: float = 0.05) -> tuple[float, float]:
-    """Return the limits of an axis that holds all finite values, positive ones where log."""
+    """Return the limits of an axis that holds all finite values, positive ones if log."""
     known = np.ravel(np.asarray(values, dtype=float))
     known = known[np.isfinite(known) & ((known > 0.0) | (not log))]
     if known.size == 0:

@@ -1,4 +1,4 @@
-"""A figure with its data: what is drawn through a Sheet is also written to its CSV, in SI units."""
+"""A figure with its data: data drawn through a Sheet are also written to its CSV, in SI units."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Sheet:
 
     name: stem of its files.
     title: text above the figure.
-    caption: what is shown and how to read it, without reference to the paper.
+    caption: its content and how to read it, without reference to the paper.
     mosaic: rows of names of the axes, as matplotlib takes it; they are the table's column panel.
     size: (width, height) in inches.
 
@@ -91,7 +91,7 @@ class Sheet:
         tags: dict | None = None,
         **style: Any,
     ) -> Line2D:
-        """Draw y over x, and a band from low to high where given; return the line.
+        """Draw y over x, and a band from low to high if given; return the line.
 
         x, y: (column, values) with values (point,) in SI.
         tags: {column: value} that identify the curve, recorded with each point.
@@ -211,7 +211,7 @@ class Sheet:
     def save(self, folder: str | Path) -> None:
         """Write name.png, name.pdf, name.csv and the caption as name.txt into a folder.
 
-        The folder is created where it is missing.
+        The folder is created if it is missing.
         """
         folder = Path(folder)
         tidy_log_axes(self.figure)

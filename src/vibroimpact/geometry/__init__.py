@@ -1,1 +1,1 @@
-"""Where a tube runs in space: its centreline, directions across it, and the mesh along it."""
+"""A tube in space: its centreline, directions across it, and the mesh along it."""

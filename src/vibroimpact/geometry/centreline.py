@@ -19,7 +19,7 @@ SAME_PLACE_M = 1.0e-9
 class Segment:
     """A straight or circular segment.
 
-    begin: arc length in m where it begins.
+    begin: arc length of its start, m.
     length: its length in m.
     start (3,): position in m of its beginning.
     tangent (3,): unit tangent at its beginning.
@@ -103,7 +103,7 @@ class Centreline:
     def locate(self, position: ArrayLike, name: str) -> float:
         """Return the arc length in m of the point nearest to `position` (3,) in m.
 
-        name: what the position is of, for the message.
+        name: the owner of the position, for the message.
         Raises ValueError when the position is more than 5 mm off the centreline. The message gives
         the distance and the nearest point.
         """
@@ -189,7 +189,7 @@ def _join(
 ) -> Centreline:
     """Return the Centreline of pieces laid end to end.
 
-    start (3,): position in m where it begins.
+    start (3,): position of its start, m.
     direction (3,): tangent there.
     pieces: (length in m, radius in m, toward) of each.
     """

@@ -11,7 +11,7 @@ ZERO_COMPONENT = 1.0e-13
 def unit_vector(vector: ArrayLike) -> np.ndarray:
     """Return `vector` (3,) at length 1, with components below 1e-13 set to exactly 0.
 
-    A rotation by 180 degrees leaves 1e-16 where a component is 0. Exact zeros keep the planes of
+    A rotation by 180 degrees leaves 1e-16 for a component that is 0. Exact zeros keep the planes of
     motion exactly uncoupled.
     Raises ValueError when the vector has length 0.
     """
@@ -30,7 +30,7 @@ def transverse_directions(tangent: np.ndarray) -> np.ndarray:
     """Return (2, 3), two unit vectors perpendicular to `tangent` (3,) and to each other.
 
     They are the two global axes least aligned with the tangent, in the order x, y, z, made
-    perpendicular to it. A tangent along z gives exactly x and y. Where two global axes are equally
+    perpendicular to it. A tangent along z gives exactly x and y. If two global axes are equally
     aligned, the later one is left out.
     """
     aligned = np.abs(tangent)

@@ -25,8 +25,8 @@ def mesh_arc_lengths(
 
     Segment ends and contact points are nodes. Neighbouring contact points of a support are joined
     by one element. A stretch of a straight segment between supports or segment ends has
-    elements_per_span elements, or fewer where they would be shorter than SHORTEST_ELEMENT. A whole
-    bend has elements_per_bend; where supports cut it, its parts share them by length.
+    elements_per_span elements, or fewer if they would be shorter than SHORTEST_ELEMENT. A whole
+    bend has elements_per_bend; if supports cut it, its parts share them by length.
     """
     fixed = [
         0.0,

@@ -1,4 +1,4 @@
-"""Which stretches of a tube a support takes, and where its contact points lie on them."""
+"""Which stretches of a tube a support takes, and the places of its contact points on them."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def support_spans(centreline: Centreline, support: Any) -> list[tuple[float, flo
     """Return [(first, last)] arc lengths in m of the plates or bars of a support, in its order.
 
     There is one, about at_m and height_m long; the two pairs of bars of a lattice with spacing_m
-    have one each. What reaches past an end of the tube is cut there.
+    have one each. A part that reaches past an end of the tube is cut there.
 
     support: entry of the configuration.
 
@@ -54,7 +54,7 @@ def contact_places(centreline: Centreline, support: Any) -> np.ndarray:
     """Return (contact_point,) arc lengths in m of a support's contact points, in its order.
 
     They are evenly spaced over each plate or pair of bars, both edges included. A single point is
-    at the middle, where an end of the tube cuts nothing off.
+    at the middle, if an end of the tube cuts nothing off.
 
     support: entry of the configuration.
     """

@@ -1,4 +1,4 @@
-"""From what each method fitted to one case to graded estimates of the equivalent support."""
+"""From the fit of each method to one case to graded estimates of the equivalent support."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -42,7 +42,7 @@ C_AT_EDGE = "c is at the edge of the family: with less, a mode of the linear tub
 
 
 def standard_errors(covariance: np.ndarray) -> np.ndarray:
-    """Return (parameter,) standard errors, infinite where round-off left a negative variance."""
+    """Return (parameter,) standard errors, infinite if round-off left a negative variance."""
     variance = np.diag(covariance)
     return np.sqrt(np.where(variance < 0.0, np.inf, variance))
 

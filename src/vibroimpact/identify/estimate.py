@@ -34,10 +34,10 @@ class Estimate:
     frequency, damping_ratio: of the pole behind the estimate (Hz, undamped); NaN for none.
     quality: ok, weak or unresolved. It judges k with the error of the model included.
     note: the reason for the quality.
-    flag: what makes the estimate doubtful beyond its standard error, see guards; mostly empty. A
-        flagged estimate takes no part in what a study recommends.
-    k_bound: N/m, that k is below where it does not differ from 0; else NaN.
-    caution: what else is to be known of the case, whatever the method.
+    flag: the doubts about the estimate beyond its standard error, see guards; mostly empty. A
+        flagged estimate takes no part in the recommended values.
+    k_bound: N/m, the upper bound of k if it does not differ from 0; else NaN.
+    caution: further remarks on the case, whatever the method.
     contact_fraction: share of time in contact of the support that is touched most; NaN if unknown.
     group, direction: the supports that share k and c, and the direction that they act in.
     """
@@ -89,7 +89,7 @@ def grade(
 
     model_error: standard error of k in N/m that an imperfect model causes.
     model_error_at_zero: the same near k = 0.
-    stiffness_range: N/m, where the method searched.
+    stiffness_range: N/m, that of the search.
     c_error_limit: standard error of c in N s/m above which c is not resolved.
     """
     k, error = estimate.k, np.hypot(estimate.k_standard_error, model_error)

@@ -112,7 +112,7 @@ def _why_unresolved(k: float, error: float, search: SupportSearch) -> str:
 
 
 def _with_damping(estimate: Estimate, c: float, error: float, search: SupportSearch) -> Estimate:
-    """Return the estimate with c where it is resolved, or with the reason."""
+    """Return the estimate with c if it is resolved, or with the reason."""
     if not np.isfinite(c):
         return estimate
     if error > C_ERROR * abs(c) and error * search.omega > LOSS_ERROR * estimate.k:

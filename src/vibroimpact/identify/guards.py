@@ -1,8 +1,8 @@
-"""What makes an estimate doubtful beyond its standard error: the texts of the column `flag`.
+"""Doubts about an estimate beyond its standard error: the texts of the column `flag`.
 
 A flag does not change a value, but for a run whose energy balance is open: what was identified from
-it is not resolved. A flagged estimate takes no part in what a study recommends. The column
-`caution` tells what is to be known of a case whatever the method.
+it is not resolved. A flagged estimate takes no part in the recommended values. The column
+`caution` holds remarks on a case, whatever the method.
 """
 
 from __future__ import annotations
@@ -41,10 +41,10 @@ def guarded(
 ) -> list[Estimate]:
     """Return the estimates of one case with the flags and cautions that any method can have.
 
-    record: with the residuals of the energy balance, where it has them; None for a measured case.
+    record: with the residuals of the energy balance, if it has them; None for a measured case.
     averages: effective degrees of freedom of a bin.
-    search_Hz: where the main peak was looked for.
-    unusable: which channels the methods can not use; a reason for what is not resolved.
+    search_Hz: the band searched for the main peak.
+    unusable: which channels the methods can not use; a reason for unresolved values.
     """
     record = xr.Dataset() if record is None else record
     energy = energy_flag(record)
@@ -125,9 +125,9 @@ def peak_not_crossed(fit: PeakFit, band_Hz: Sequence[float]) -> str:
     """Return that a peak does not fall to 1/FLANKS of its height inside the band, or nothing.
 
     The fit then takes bins without power for a flank. It is asked of all levels, because such a fit
-    is too narrow: its own half-power points lie inside the band where the true ones do not.
+    is too narrow: its own half-power points lie inside the band and the true ones do not.
 
-    band_Hz: where the force has power and the spectrum has bins.
+    band_Hz: that in which the force has power and the spectrum has bins.
     """
     low, high = band_Hz
     edges = level_edges(fit.frequency, fit.damping_ratio, FLANKS)
@@ -144,7 +144,7 @@ def peak_not_crossed(fit: PeakFit, band_Hz: Sequence[float]) -> str:
 def other_mode(model: ModalModel, k: float, c: float, pole: tuple[float, float]) -> str:
     """Return that a pole belongs to another mode than the first of the linear tube, or nothing.
 
-    The first mode is followed from c = 0. Where modes cross on the way, k and c have the pole, but
+    The first mode is followed from c = 0. If modes cross on the way, k and c have the pole, but
     not for the mode that they were sought for.
 
     k, c: N/m and N s/m.

@@ -15,7 +15,7 @@ class LagWindow:
     """The weights of correlations before they are transformed back to spectra.
 
     weights: (lag,).
-    decay: 1/s, what the exponential window adds to the decay of every mode; to be subtracted.
+    decay: 1/s, that the exponential window adds to the decay of every mode; to be subtracted.
     """
 
     weights: np.ndarray
@@ -32,7 +32,7 @@ def lag_window(
 
     window: name of the analysis window.
     samples: lags in one segment of segment_s seconds.
-    longest_lag_s: s, where the exponential has fallen to last_weight.
+    longest_lag_s: s, at which the exponential has fallen to last_weight.
     """
     lags = max(2, min(int(longest_lag_s / segment_s * samples), samples // 2))
     decay = -np.log(last_weight) / longest_lag_s

@@ -55,13 +55,13 @@ def identify_case(
     """Return (estimates, dataset of the curves behind them) of one case.
 
     A method that cannot resolve the support returns an unresolved estimate with a note. So do all
-    where the energy balance of the record is open, see guards.
+    if the energy balance of the record is open, see guards.
 
     config: with structure.section, excitation, spectra and identification.
-    record: statistics of the case (secant.MOMENTS, the residuals of the energy balance where it has
+    record: statistics of the case (secant.MOMENTS, the residuals of the energy balance if it has
         them, attributes load_rms_N and gap_m). None for a measured case: the methods that need
         its contacts are left out.
-    spectra: dataset of study.case_spectra. Where its attribute `force` is "unknown", broadband is
+    spectra: dataset of study.case_spectra. If its attribute `force` is "unknown", broadband is
         not resolved. A variable force_psd (low_frequency,) is the relative PSD of the force.
     """
     estimates, curves = _identify(config, model, record, spectra)
@@ -73,7 +73,7 @@ def identify_case(
 def _identify(
     config: ConfigPart, model: ModalModel, record: xr.Dataset | None, spectra: xr.Dataset
 ) -> tuple[list[Estimate], xr.Dataset]:
-    """Return what identify_case returns, before its guards."""
+    """Return the results of identify_case, before its guards."""
     directions, modes = reached_supports(model, config.identification.groups)
     if len(directions) > 1 or not acts_on_all(directions[0], model, modes):
         return _identify_each(config, model, record, spectra)
@@ -105,7 +105,7 @@ def _identify(
 def _identify_each(
     config: ConfigPart, model: ModalModel, record: xr.Dataset | None, spectra: xr.Dataset
 ) -> tuple[list[Estimate], xr.Dataset]:
-    """Return what identify_case returns, for several unknown supports."""
+    """Return the results of identify_case, for several unknown supports."""
     tube = _supports_tube(model, config.identification.groups, *_layout(config, spectra))
     case = SupportsCase(spectra, tube, config.identification)
     result = case.fit()

@@ -35,7 +35,7 @@ SHAPE_LOSS = 0.1  # loss factor of the supports where the search by shapes start
 
 @dataclass(frozen=True)
 class SupportsResult:
-    """What the methods found in one case.
+    """The results of the methods in one case.
 
     peaks: {method: PeakFit or None}.
     pole, shape, spectra, shapes: of the other methods, None if they found nothing.

@@ -1,7 +1,7 @@
-"""What the data know of several stiffnesses, in words, from the covariance of their logarithms.
+"""The information on several stiffnesses in words, from the covariance of their logarithms.
 
 A combination of stiffnesses, a product of powers, is an eigenvector of the covariance of ln k. Its
-variance is the eigenvalue. What is not known alone may still be known in combination.
+variance is the eigenvalue. A value that is not known alone may still be known in combination.
 """
 
 from collections.abc import Sequence

@@ -57,7 +57,7 @@ def minimise(
     settled: relative decrease of the cost in a pass at which it ends.
     told(pass, cost): called after each pass.
 
-    It also ends where no step lowers the cost. Raises ValueError where the start has no finite
+    It also ends if no step lowers the cost. Raises ValueError if the start has no finite
     error.
     """
     began, values, damping = time.monotonic(), np.asarray(start, float), FIRST_DAMPING
@@ -113,7 +113,7 @@ def minimise_by_differences(
     error_of: ErrorOf, start: np.ndarray, steps: np.ndarray, passes: int
 ) -> Minimum:
     """Return the Minimum of |error|² from a start (value,), its Jacobian by differences with steps
-    (value,). passes: at most. Raises ValueError where the start has no finite error.
+    (value,). passes: at most. Raises ValueError if the start has no finite error.
     """
 
     def evaluate(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -42,7 +42,7 @@ def identify_modes(
     Poles come from LSCF, residues from linear least squares; then all are refined together.
 
     kinds, names, drive: of the channels, see IdentifiedModes.
-    residuals: whether residual modes stand for what is (below, above) the band.
+    residuals: whether residual modes stand for modes (below, above) the band.
 
     Raises ValueError when no pole is stable.
     """
@@ -161,7 +161,7 @@ def refine_modes(
 
 
 class Ridge:
-    """A penalty that holds values near their start where the records do not determine them.
+    """A penalty that holds values near their start if the records do not determine them.
 
     Shapes are held near zero instead, so that they do not grow unobserved.
 

@@ -119,11 +119,11 @@ def match_shape(
 ) -> ShapeMatch:
     """Return the ShapeMatch of a DeflectionShape with the family.
 
-    The MAC is largest where the part of the measured shape along the derivative of the member's
+    The MAC is largest if the part of the measured shape along the derivative of the member's
     shape vanishes: Gauss-Newton in ln k.
 
     response: FamilyResponse of the line's points on the bins of the spectra.
-    mode_shapes: (k (k,) N/m, the first mode's shapes (k, line_point)), where the search starts.
+    mode_shapes: (k (k,) N/m, the first mode's shapes (k, line_point)), at which the search starts.
     member: function (ln k, errors = 0) -> (k in N/m, c in N s/m) of the member with about that k
         and the damping of the peak, plus so many of its standard errors.
     """

@@ -147,7 +147,7 @@ def cramer_rao_covariance(frequency: float, damping_ratio: float, duration_s: fl
 def _estimator_bias(
     found: complex, tube_spectra: Callable, estimate: Callable[[np.ndarray], complex | None]
 ) -> complex:
-    """Return what the estimator adds to a pole in rad/s, on exact spectra of the linear tube."""
+    """Return the bias of the estimator of a pole in rad/s, on exact spectra of the linear tube."""
     bias: complex = 0.0
     for _ in range(BIAS_PASSES):
         tube = tube_spectra(*frequency_of(found - bias))

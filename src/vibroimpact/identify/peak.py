@@ -35,7 +35,7 @@ class PeakFit:
 
     frequency, damping_ratio: Hz (undamped) and fraction.
     covariance: (2, 2) of the two.
-    edges_Hz: where 1/|D|² crosses peak/level.
+    edges_Hz: frequencies at which 1/|D|² crosses peak/level.
     bins: slice of the spectrum used.
     curve: (bin,) the fitted expected PSD there.
     """
@@ -49,7 +49,7 @@ class PeakFit:
 
 
 def level_edges(frequency: float, damping_ratio: float, level: float) -> tuple[float, float]:
-    """Return the two frequencies in Hz where 1/|D|² is `level` times below its maximum.
+    """Return the two frequencies in Hz at which 1/|D|² is `level` times below its maximum.
 
     Exact for any damping ratio below 0.7. The lower edge is 0 if a wide curve never falls that
     low.
@@ -174,7 +174,7 @@ def _score(
     factor: Callable | None,
     tolerance: float,
 ) -> _Score | None:
-    """Return the _Score where the quasi-likelihood of the bins is stationary, or None.
+    """Return the _Score at which the quasi-likelihood of the bins is stationary, or None.
 
     The bins are gamma distributed about the curve. Fisher scoring solves
     sum of weight (estimate/curve - 1) slope = 0. Bins and weights follow the curve, not the noise.
@@ -214,7 +214,7 @@ def _plausible(theta: np.ndarray, frequency: np.ndarray) -> bool:
 
 
 def _bins(frequency: np.ndarray, theta: np.ndarray) -> slice:
-    """Return the bins where the resonance is above its peak/FARTHEST, at least FEWEST_BINS.
+    """Return the bins in which the resonance is above its peak/FARTHEST, at least FEWEST_BINS.
 
     Only these have a weight.
     """

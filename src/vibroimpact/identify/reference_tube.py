@@ -101,7 +101,7 @@ class ReferenceTube:
     ) -> None:
         """Prepare the family of responses.
 
-        force_band_Hz: where the force has power.
+        force_band_Hz: the band of the force.
         broadband_Hz: band of the broadband method; it is cut to that of the force.
         stiffness_range: N/m.
         force_psd: (frequency,) relative PSD of the force on the bins; None for a white one.
@@ -126,7 +126,7 @@ class ReferenceTube:
 
     @property
     def seen_band_Hz(self) -> tuple[float, float]:
-        """Return the band in Hz where the force has power and the spectra have bins."""
+        """Return the band in Hz in which the force has power and the spectra have bins."""
         return seen_band_Hz(self.force_band_Hz, self.bins)
 
     @cached_property
@@ -262,7 +262,7 @@ class ReferenceTube:
     ) -> tuple[np.ndarray, complex] | None:
         """Return exact cross-spectra (sensor, reference, frequency) and the first pole in rad/s.
 
-        They belong to the tube with the first pole given. Where it needs a c so negative that
+        They belong to the tube with the first pole given. If it needs a c so negative that
         another mode is unstable, c is limited. None when no support gives the pole.
         """
         support = equivalent_support(self.modes, frequency, damping_ratio)

@@ -1,6 +1,6 @@
 """Standard errors from the scatter of a record's own segments.
 
-They include what is not Gaussian in the response, such as impacts.
+They include parts of the response that are not Gaussian, such as impacts.
 """
 
 import numpy as np
@@ -45,7 +45,7 @@ def effective_duration(averages: float, kernel: SpectralKernel) -> float:
 
 
 def widened(covariance: np.ndarray, changes: np.ndarray, averages: float) -> np.ndarray:
-    """Return the covariance, widened where the segments scatter more than it predicts.
+    """Return the covariance, widened if the segments scatter more than it predicts.
 
     It is never made narrower. One factor serves all parameters, the mean of the variance ratios:
     each ratio alone is as noisy as nu/2 segments make it. Arguments as in segment_covariance.

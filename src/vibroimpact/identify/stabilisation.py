@@ -105,7 +105,7 @@ def first_stable_order(
     It is the lowest order from FIRST_ORDER to LAST_ORDER that shows the main peak as one stable
     pole. Higher orders add only noise to the peak of one mode, and split the peak of a nonlinear
     structure, whose stiffness varies, into several poles. An order with a second pole as near is
-    passed over. Where no order qualifies, it is the highest one up to FIRST_ORDER with a single
+    passed over. If no order qualifies, it is the highest one up to FIRST_ORDER with a single
     pole, marked as not stable.
 
     start: a guess of the pole in rad/s.

@@ -26,7 +26,7 @@ LowestDamping = Callable[[np.ndarray], np.ndarray]
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """Where a search starts: ln k (direction,) and one loss factor omega c / k at the main peak."""
+    """The start of a search: ln k (direction,) and one loss factor omega c / k at the main peak."""
 
     log_k: np.ndarray
     loss: float
@@ -50,7 +50,8 @@ class SupportValues:
 
 
 def inverse_information(jacobian: np.ndarray) -> np.ndarray:
-    """Return (value, value) the inverse of J^T J, very large along what the residual does not see.
+    """Return (value, value) the inverse of J^T J, very large along directions that the residual
+    does not show.
 
     jacobian: J, (residual, value).
     """
@@ -64,7 +65,7 @@ def inverse_information(jacobian: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class SupportSearch:
-    """Where a method searches.
+    """The range of a search.
 
     stiffness_range: N/m.
     omega: rad/s of the main peak, which scales the damping.
@@ -94,7 +95,7 @@ class SupportSearch:
         """Return (direction,) ln k near the smallest cost(ln k).
 
         Sweeps over one direction at a time begin at several stiffnesses that all have alike: each
-        alone ends too often where one support is taken for infinitely stiff.
+        alone ends too often with one support taken for infinitely stiff.
         """
         low, high = np.log(self.stiffness_range)
         places = np.linspace(low, high, 2 + int((high - low) / SPACING))
@@ -139,7 +140,7 @@ class SupportSearch:
         lowest_c: function of k (direction,) in N/m that gives the c (direction,) in N s/m below
             which the structure is unstable.
 
-        Raises LinAlgError where the residual at the start is not finite.
+        Raises LinAlgError if the residual at the start is not finite.
         """
         from scipy.optimize import least_squares  # half a second to import
 

@@ -3,7 +3,7 @@
 One shape of the main peak cannot tell several supports apart. So the band of the shape line's
 spectra is cut into blocks, each with its own operational deflection shape (ODS), the first singular
 vector as in `ods`. The linear structure's shape in a block is G u, with G the sum of h h^H over
-the block, h its response along the line and u the measured shape: where u is the structure's own
+the block, h its response along the line and u the measured shape: if u is the structure's own
 ODS, G u is along u. Its derivatives are closed.
 
 A block counts by the inverse of its variance, which holds the error of the sensors' gains, the part
@@ -153,7 +153,7 @@ class ShapeComparison:
         """Return (residual (residual,), jacobian (residual, 2 direction)) by ln k and c.
 
         The residual is the part of the measured shapes across the structure's, in standard
-        deviations, and the departure of the loss factors from what is expected.
+        deviations, and the departure of the loss factors from the expected ones.
         """
         shape, by = self._shapes(k, c)
         length = np.linalg.norm(shape, axis=1, keepdims=True)

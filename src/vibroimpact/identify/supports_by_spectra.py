@@ -124,7 +124,7 @@ class SpectraComparison:
 
 
 def _widened(covariance: np.ndarray, changes: np.ndarray, averages: float) -> np.ndarray:
-    """Return the covariance, widened per value where the segments scatter more than it says."""
+    """Return the covariance, widened per value if the segments scatter more than it says."""
     result = covariance.copy()
     for index in range(len(covariance)):
         own = covariance[index : index + 1, index : index + 1]

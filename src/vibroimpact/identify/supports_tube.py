@@ -94,7 +94,7 @@ class SupportsTube:
 
     @property
     def seen_band_Hz(self) -> tuple[float, float]:
-        """Return the band in Hz where the force has power and the spectra have bins."""
+        """Return the band in Hz in which the force has power and the spectra have bins."""
         return seen_band_Hz(self.force_band_Hz, self.bins)
 
     def force_psd(self, frequency: np.ndarray) -> np.ndarray:

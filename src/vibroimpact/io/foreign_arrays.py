@@ -20,7 +20,7 @@ MOST_RATIO = 20
 
 
 class ForeignFileError(ValueError):
-    """A file that cannot be read; the message names it, what is wrong and the remedy."""
+    """A file that cannot be read; the message names it, the fault and the remedy."""
 
 
 @contextmanager
@@ -44,7 +44,7 @@ def refused_if_damaged(path: str | Path, kind: str, remedy: str) -> Iterator[Non
 
 
 def require_size(path: str | Path, size: float, what: str) -> None:
-    """Raise ForeignFileError where what a file holds would take far more memory than the file.
+    """Raise ForeignFileError if the content of a file would take far more memory than the file.
 
     size: bytes.
     """

@@ -25,9 +25,9 @@ def redirect_output(path: str | Path) -> None:
     """Send all that this process prints, errors included, to a new file, line by line.
 
     An error of this package says all in its message, and the log ends with that. Of any other error
-    it holds the whole traceback. Where the log cannot be written, the message goes to the terminal.
+    it holds the whole traceback. If the log cannot be written, the message goes to the terminal.
 
-    Raises SystemExit with a sentence where the file cannot be made.
+    Raises SystemExit with a sentence if the file cannot be made.
     """
     path = Path(path)
     try:

@@ -1,4 +1,4 @@
-"""A small memo of costly results, by the content of what they were computed from.
+"""A small memo of costly results, by the content of their arguments.
 
 Variants of a model differ in little: most share the finite-element matrices and the Ritz basis.
 """
@@ -14,7 +14,7 @@ MAX_ENTRIES = 8  # a few variants beside the unchanged model
 
 
 class Memo:
-    """The last MAX_ENTRIES results by key; what was not asked for the longest is dropped first."""
+    """The last MAX_ENTRIES results by key; the one unused for the longest is dropped first."""
 
     def __init__(self) -> None:
         self.results: dict[Hashable, Any] = {}

@@ -1,4 +1,4 @@
-"""Where a result comes from: digests of configuration and source, versions, imported files."""
+"""The origin of a result: digests of configuration and source, versions, imported files."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def versions() -> dict[str, str]:
 
 
 def origin(params: Mapping[str, Any], library: str) -> dict[str, str]:
-    """Return {name: text} of what made a result.
+    """Return {name: text} of the origin of a result.
 
     They are the version of vibroimpact, the digests of a stage's keys and of its source files, and
     the versions of the packages that it used.
@@ -84,8 +84,8 @@ def origin(params: Mapping[str, Any], library: str) -> dict[str, str]:
 def verdict_origin(
     params: Mapping[str, Any], campaign: Path | str, seed: int | str | None
 ) -> dict[str, Any]:
-    """Return {name: value} of what made a verdict: version, digests of the whole package, of the
-    campaign file and of the configuration, seed, versions of packages.
+    """Return {name: value} of the origin of a verdict: version, digests of the whole package, of
+    the campaign file and of the configuration, seed, versions of packages.
 
     params: the configuration in plain values.
     campaign: the campaign file.
@@ -157,7 +157,7 @@ def imported_files(script: Path | str, *sources: Path | str) -> list[Path]:
 def _imports(file: Path, sources: tuple[Path, ...], _changed_at: int) -> frozenset[Path]:
     """Return the library files that a file imports itself.
 
-    Cached by the time of the last change: the scripts share most of what they import.
+    Cached by the time of the last change: the scripts share most of their imports.
     """
     return frozenset(
         module

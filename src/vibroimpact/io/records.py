@@ -45,7 +45,7 @@ def write_record(dataset: xr.Dataset, path: str | Path, names_kept: bool = False
 
     names_kept: as in RecordFile.
 
-    The file appears complete or not at all. Raises TypeError for other contents, RecordError where
+    The file appears complete or not at all. Raises TypeError for other contents, RecordError if
     the folder cannot be written or is full.
     """
     with RecordFile(path, dataset, names_kept=names_kept):
@@ -70,7 +70,7 @@ class RecordFile:
         sizes: dict[str, int] | None = None,
         names_kept: bool = False,
     ) -> None:
-        """Create the file and write what is known from the start.
+        """Create the file and write the contents that are known from the start.
 
         dataset: variables of numbers and texts, written at once.
         parts: {name: (dimensions, type, attributes)} of the variables that `put` fills later.
@@ -78,7 +78,7 @@ class RecordFile:
         names_kept: write all names as they are. Otherwise labels of a dimension and the time get
             the names that CF asks for, support_name and elapsed_time, which read_record undoes.
 
-        Raises TypeError for a variable that holds neither numbers nor texts, RecordError where the
+        Raises TypeError for a variable that holds neither numbers nor texts, RecordError if the
         folder cannot be written or is full.
         """
         self._names = {} if names_kept else _names_in_file(dataset)
@@ -140,7 +140,7 @@ def _put_variables(
 ) -> list:
     """Create all variables and write those of the dataset.
 
-    names: {name of a variable: its name in the file} where they differ.
+    names: {name of a variable: its name in the file} if they differ.
 
     Returns the auxiliary coordinates that no variable refers to. An auxiliary coordinate is one
     whose name is not that of a dimension.
@@ -218,7 +218,7 @@ def read_record(path: str | Path, names: Iterable[str] | None = None) -> xr.Data
 
 @contextmanager
 def _opened(path: str | Path, remedy: str) -> Iterator[netCDF4.Dataset]:
-    """Open a netCDF file to read it. Raises RecordError, also where reading in the block fails."""
+    """Open a netCDF file to read it. Raises RecordError, also if reading in the block fails."""
     try:
         with netCDF4.Dataset(path) as file:
             yield file
@@ -268,7 +268,7 @@ def read_dataset(path: str | Path, remedy: str = GIVE_AGAIN) -> xr.Dataset:
     """Return the dataset of any netCDF file, decoded by the CF conventions; the time of a record is
     called `time`, as in read_record.
 
-    remedy: what to do where it cannot be read: GIVE_AGAIN for a file that a user gave, MAKE_AGAIN
+    remedy: for a file that cannot be read: GIVE_AGAIN for a file that a user gave, MAKE_AGAIN
         for a result.
     Raises RecordError.
     """
@@ -310,7 +310,7 @@ def read_given_dataset(path: str | Path, described: Iterable[str] = ()) -> xr.Da
 
 
 def _require_plausible_size(dataset: xr.Dataset, path: Path) -> None:
-    """Raise RecordError where the variables of a file are far larger than the file.
+    """Raise RecordError if the variables of a file are far larger than the file.
 
     They would fill the memory with values that were never written.
     """
@@ -419,7 +419,7 @@ def is_hdf5(path: str | Path) -> bool:
 
 def _inspect_hdf5(path: str | Path) -> None:
     """Raise RecordError if an HDF5 file refers to another file, which would be read instead, or
-    where the type of its numbers is none that numpy has, as after damage: the values would differ.
+    if the type of its numbers is none that numpy has, as after damage: the values would differ.
     """
     import h5py
 
@@ -459,7 +459,7 @@ def _refuse_cut(path: str | Path) -> None:
 
 
 def _refuse_size(path: str | Path, arrays: Mapping[str, Any], packing: int) -> None:
-    """Raise RecordError where arrays of a file claim more numbers than it holds or than are read.
+    """Raise RecordError if arrays of a file claim more numbers than it holds or than are read.
 
     arrays: anything with shape and dtype. packing: the most that the format compresses.
     """
@@ -496,7 +496,7 @@ def write_cells(columns: Iterable[str], rows: Iterable, path: str | Path) -> Non
     A text that a spreadsheet would take for a formula gets an apostrophe in front, which read_table
     takes away.
 
-    Raises RecordError where the folder cannot be written or is full.
+    Raises RecordError if the folder cannot be written or is full.
     """
     with (
         whole_file(path) as temporary,
@@ -510,7 +510,7 @@ def write_cells(columns: Iterable[str], rows: Iterable, path: str | Path) -> Non
 def write_text(text: str, path: str | Path) -> None:
     """Write a text file, whole or not at all.
 
-    Raises RecordError where the folder cannot be written or is full.
+    Raises RecordError if the folder cannot be written or is full.
     """
     with whole_file(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
@@ -525,7 +525,7 @@ def read_json(path: str | Path) -> Any:
 
 
 def read_table(path: str | Path, texts: Iterable[str] = ()) -> list[dict[str, Any]]:
-    """Return the rows of a CSV table of write_table; what reads as a number becomes one.
+    """Return the rows of a CSV table of write_table; text that reads as a number becomes one.
 
     texts: columns whose values stay texts: a name may read as a number.
 

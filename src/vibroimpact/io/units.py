@@ -1,6 +1,6 @@
 """Units of measured channels: the factor from a UDUNITS text to SI.
 
-A unit that is not certain raises an error that says what to write; nothing is guessed.
+A unit that is not certain raises an error that states the remedy; nothing is guessed.
 """
 
 from __future__ import annotations

@@ -41,9 +41,9 @@ def whole_file(path: str | Path) -> Iterator[Path]:
     the block.
 
     Its content is on the disk before it is renamed: after a power failure too there is the old file
-    or the new one. The folder is created where it is missing. If the block raises, no file remains.
+    or the new one. The folder is created if it is missing. If the block raises, no file remains.
 
-    Raises RecordError with the reason and the remedy where the folder cannot be written or is full,
+    Raises RecordError with the reason and the remedy if the folder cannot be written or is full,
     whatever the library that failed in the block said of it.
     """
     path = Path(path)
@@ -82,7 +82,7 @@ def _flush(path: Path) -> None:
 
 
 def _reason(folder: Path, error: Exception) -> str | None:
-    """Return why a file of a folder could not be written and what to do; None if the error is
+    """Return why a file of a folder could not be written and the remedy; None if the error is
     not of the folder.
     """
     number = error.errno if isinstance(error, OSError) else None

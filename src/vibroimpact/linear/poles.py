@@ -34,8 +34,8 @@ def frequency_of(pole: Any) -> tuple[Any, Any]:
 def first_pole(model: ModalModel, k: float, c: float) -> complex:
     """Return the pole in rad/s of the first mode of the driven block, imaginary part positive.
 
-    The pole is followed from c = 0, where it belongs to the lowest mode. So it stays that of the
-    same mode where damping makes poles cross or overdamps others.
+    The pole is followed from c = 0, at which it belongs to the lowest mode. So it stays that of the
+    same mode if damping makes poles cross or overdamps others.
 
     k, c: stiffness in N/m and damping in N s/m of the support.
 
@@ -56,7 +56,7 @@ def pole_sensitivity(model: ModalModel, k: float, c: float) -> tuple[complex, co
 def support_from_pole(model: ModalModel, pole: complex) -> tuple[float, float]:
     """Return (k in N/m, c in N s/m) of the support that gives the first mode a pole in rad/s.
 
-    This is the exact inverse of first_pole. p is a pole where I + (k + p c) G(p) is singular, with
+    This is the exact inverse of first_pole. p is a pole if I + (k + p c) G(p) is singular, with
     the contact compliance G = B^T (p² + p damping + omega²)^-1 B of the tube without support, so
     that k + p c = -1/eigenvalue of G(p). Every candidate is checked with first_pole; the fast form
     without this check is identify.equivalent_support.

@@ -123,7 +123,7 @@ def _support_direction(
 def reached_modes(
     model: ModalModel, directions: Sequence[SupportDirection]
 ) -> tuple[np.ndarray, list[bool]]:
-    """Return (mode indices (mode,), whether each direction is reached) of what the force moves.
+    """Return (mode indices (mode,), bool of each direction) that the force moves.
 
     A force moves modes; these move supports, which move further modes. Raises ValueError when no
     support is moved.
@@ -152,7 +152,7 @@ def reached_supports(
 ) -> tuple[tuple[SupportDirection, ...], np.ndarray]:
     """Return (the SupportDirections that the force moves, indices of the modes that it moves).
 
-    They are the unknowns of the identification. Raises ValueError where the force moves none.
+    They are the unknowns of the identification. Raises ValueError if the force moves none.
 
     groups: identification.groups.
     """
@@ -174,7 +174,7 @@ def acts_on_all(direction: SupportDirection, model: ModalModel, modes: np.ndarra
 def unreached_supports(
     model: ModalModel, groups: str | tuple[tuple[str, ...], ...]
 ) -> list[tuple[str, str]]:
-    """Return (group, direction) of what the force does not move."""
+    """Return (group, direction) that the force does not move."""
     reached = {direction.name for direction in reached_supports(model, groups)[0]}
     return [
         (direction.group, direction.direction)

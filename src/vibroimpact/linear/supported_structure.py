@@ -146,7 +146,7 @@ class SupportedStructure:
         return np.sqrt(np.maximum(squares, 0.0)), vectors
 
     def own_compliance(self, k: np.ndarray) -> np.ndarray:
-        """Return (direction,) m/N, the static compliance where each direction acts.
+        """Return (direction,) m/N, the static compliance along each direction.
 
         The other directions have their stiffness k (direction,) in N/m.
         """

@@ -1,7 +1,7 @@
 """Metals of heat exchangers by name: Young's modulus against temperature, Poisson's ratio, density.
 
 Densities are those at room temperature: a tube's mass per length, by its dimensions at room
-temperature, does not change with heat. A Poisson's ratio of 0.3 is taken where the sources give
+temperature, does not change with heat. A Poisson's ratio of 0.3 is taken if the sources give
 none; the bending of a slender tube hardly depends on it.
 """
 
@@ -26,7 +26,7 @@ class Solid:
     young_modulus: Pa, of a temperature in °C.
     poisson_ratio: of a temperature in °C.
     density: kg/m³.
-    source: where modulus, Poisson's ratio and density come from.
+    source: of modulus, Poisson's ratio and density.
     """
 
     range_C: tuple[float, float]

@@ -45,13 +45,13 @@ class MeasuredSupports:
 
     config: the model's configuration with the records and sensors of the campaign.
     model: linear model whose sensors are those of the campaign.
-    force: what is known of the forces.
+    force: the known spectra of the forces.
     records: {Case: name of the record}.
     spectra, curves: {Case: Dataset}, as of study.case_spectra and identify.identify_case.
     rows, summary, equivalent: those of consistency.csv, consistency_summary.csv, equivalent.csv.
-    levels: "load_rms_N", or "response_rms_m" where no record has a load: the rows then hold the RMS
+    levels: "load_rms_N", or "response_rms_m" if no record has a load: the rows then hold the RMS
         of the displacement, in m, in the place of the load.
-    notes: sentences on what was taken for what.
+    notes: sentences on the assumptions.
     """
 
     config: ConfigPart
@@ -69,7 +69,7 @@ class MeasuredSupports:
     def to_dataset(self) -> xr.Dataset:
         """Return the estimates, their medians and verdicts, as the file consistency.nc of a study.
 
-        The coordinate `load` is in m where `levels` is the response.
+        The coordinate `load` is in m if `levels` is the response.
         """
         found = consistency_dataset(self.rows, self.summary)
         if self.levels == RESPONSE:
@@ -84,10 +84,10 @@ def equivalent_of(
 
     campaign: Dataset or file. Its force may be missing: pole and shape then give k and c.
     model: configuration of the tube with its supports, or its YAML file. Its bands and groups of
-        section identification are used where it has one.
+        section identification are used if it has one.
 
     Raises CampaignError or RecordError for a campaign that can not be used, ConfigError for a
-    model; the message says what to do.
+    model; the message states the remedy.
     """
     config = model if isinstance(model, Config) else load_config(model)
     if not isinstance(campaign, xr.Dataset):
@@ -168,7 +168,7 @@ def _levels(
 def _notes(
     config: Config, signals: CampaignSignals, force: KnownForce, used: np.ndarray
 ) -> tuple[str, ...]:
-    """Return what was taken for what, in sentences."""
+    """Return the assumptions in sentences."""
     notes = []
     if not force.known:
         notes.append(

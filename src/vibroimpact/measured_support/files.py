@@ -21,7 +21,7 @@ def write_measured(
     attributes: of the netCDF files, see provenance.file_attributes.
     digest: answer_digest of the configuration of the tube.
 
-    Where no record has a load, its columns are NaN and response_rms_m (m) stands behind them.
+    If no record has a load, its columns are NaN and response_rms_m (m) stands behind them.
     """
     folder = Path(folder)
     tables = {

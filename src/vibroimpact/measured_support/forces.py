@@ -1,4 +1,4 @@
-"""What is known of the forces on a measured structure: where they act, and their spectrum.
+"""The forces on a measured structure, as far as they are known: places and spectrum.
 
 Measured forces act at their places, with the covariance that they have over the excited band.
 Without one, turbulence of the model acts with its spectrum. Without either, every mode that the
@@ -30,12 +30,12 @@ SMOOTHED = np.array([0.25, 0.5, 0.25])  # over lines, no wider than the analysis
 
 @dataclass(frozen=True)
 class KnownForce:
-    """What is known of the forces.
+    """The forces, as far as they are known.
 
     known: whether their places and spectrum are.
-    band_Hz: where they have power.
+    band_Hz: the band of their power.
     drive_shapes: (mode, force) of independent forces with one spectrum.
-    stated_psd: function of (frequency,) in Hz that gives their relative PSD (frequency,), where it
+    stated_psd: function of (frequency,) in Hz that gives their relative PSD (frequency,), if it
         is stated and not measured.
     """
 
@@ -54,7 +54,7 @@ def known_force(
     model: attached to the campaign; its drives are the measured forces.
     own_drive: (mode, force) drives of the model's own excitation.
 
-    Raises ValueError where that reaches no support.
+    Raises ValueError if that reaches no support.
     """
     if signals.forces:
         padded, _ = signals.padded(int(signals.valid_samples.max()))

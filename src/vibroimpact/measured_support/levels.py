@@ -1,7 +1,7 @@
 """The cases of a campaign: records of one gap and about one level are the seeds of a case.
 
-The level of a record is the RMS of its force in N. Where no record has one it is the RMS of the
-displacement in m, so that records are still told apart by how strongly the structure moves.
+The level of a record is the RMS of its force in N. If no record has one it is the RMS of the
+displacement in m, so that records still differ by the strength of the motion.
 """
 
 from collections.abc import Sequence

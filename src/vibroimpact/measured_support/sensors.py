@@ -26,7 +26,7 @@ def with_own_drive(
 ) -> tuple[ModalModel, np.ndarray]:
     """Return (ModalModel attached to a campaign, its drives (mode, force) by its own excitation).
 
-    The latter are those of the campaign where it has forces.
+    The latter are those of the campaign if it has forces.
     """
     model = attach(config, campaign)
     if signals.forces:
@@ -82,7 +82,7 @@ def point_of(channel: str, axis: str) -> str:
 
 
 def groups_of(config: ConfigPart) -> str | tuple[tuple[str, ...], ...]:
-    """Return identification.groups of a configuration, `all` where it has no identification."""
+    """Return identification.groups of a configuration, `all` if it has no identification."""
     return "all" if config.identification is None else config.identification.groups
 
 

@@ -41,7 +41,7 @@ def measured_settings(
     model: with its sensors.
     used: (sensor,) indices of their channels.
 
-    Raises CampaignError where the records are too coarsely sampled for it.
+    Raises CampaignError if the records are too coarsely sampled for it.
     """
     axis = driven_axis(direction_of(config, signals))
     names = [point_of(signals.channels[each], axis) for each in used]
@@ -68,7 +68,7 @@ def measured_settings(
 
 
 def lowest_read_Hz(identification: ConfigPart) -> float:
-    """Return the lower end in Hz of what the identification reads."""
+    """Return the lower end in Hz of the spectra that the identification reads."""
     own = identification
     return min(own.peak_search_Hz[0], own.lscf.band_Hz[0], own.broadband.band_Hz[0])
 
@@ -139,7 +139,7 @@ def _around_the_peaks(
 
 
 def _require_rate(config: ConfigPart, signals: CampaignSignals) -> None:
-    """Raise CampaignError where records do not reach up to what the identification reads."""
+    """Raise CampaignError if records do not reach up to the band of the identification."""
     highest = 2.0 * config.identification.lscf.band_Hz[1]
     if highest > 0.5 * signals.rate:
         raise CampaignError(

@@ -51,10 +51,10 @@ def measured_spectra(
     used: np.ndarray,
     placed: tuple[int, Case],
 ) -> xr.Dataset:
-    """Return the spectra of a record, and the relative PSD of its force where it is not white.
+    """Return the spectra of a record, and the relative PSD of its force if it is not white.
 
-    Those of the sensors are 0 below the lowest frequency that is read, where integrated noise grows
-    without end.
+    Those of the sensors are 0 below the lowest frequency that is read, below which integrated
+    noise grows without end.
 
     config: of measured_settings.
     placed: (record, Case).

@@ -1,4 +1,4 @@
-"""Whether the supports of a tube can be identified from a campaign, told before anything runs."""
+"""Whether the supports of a tube can be identified from a campaign: checks before any job."""
 
 from collections.abc import Iterator
 
@@ -34,7 +34,7 @@ def identification_problems(config: Config, campaign: xr.Dataset) -> list[str]:
     if BASE in force_kinds(campaign):
         problems.append(
             "the base moved the structure: give records under forces, or leave the acceleration of"
-            " the base out where motions are relative to it"
+            " the base out if motions are relative to it"
         )
     own = config.model_copy(update={"excitation": ANY_FORCE})
     return [*problems, *comparison_problems(own, campaign)]

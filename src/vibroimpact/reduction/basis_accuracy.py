@@ -93,7 +93,7 @@ def basis_frequency_errors(config: ConfigPart) -> list[dict[str, Any]]:
 
 
 def require_complete(rows: Iterable[dict[str, Any]], basis: ConfigPart) -> None:
-    """Raise ModelAccuracyError where the basis as a whole lacks a mode that it should have.
+    """Raise ModelAccuracyError if the basis as a whole lacks a mode that it should have.
 
     Supports raise the frequencies of a structure: on them it has no more modes below the cut-off of
     the free modes than without.
@@ -107,9 +107,9 @@ def require_complete(rows: Iterable[dict[str, Any]], basis: ConfigPart) -> None:
         if np.isnan(row["relative_error"]):
             raise ModelAccuracyError(
                 f"basis: the reduced model has no mode at {row['full_Hz']:.6g} Hz (number"
-                f" {row['mode']} with supports of {row['stiffness_N_per_m']:g} N/m), where the full"
+                f" {row['mode']} with supports of {row['stiffness_N_per_m']:g} N/m), the full"
                 " one has: raise basis.free_modes_to_Hz, and look for elements that are very short"
-                " beside the tube"
+                " compared with the tube"
             )
 
 

@@ -1,4 +1,4 @@
-"""The initial state of a structure in modal amplitudes, and what of it they can not represent.
+"""The initial state of a structure in modal amplitudes, and the part that they can not represent.
 
 A field over the degrees of freedom, u, has the amplitudes a = shapes^T M u. They are those of the
 field nearest to it in kinetic energy, and the residual is |u - shapes a| / |u| in the norm of M.
@@ -127,7 +127,7 @@ def _mode(
 def _along_the_tube(structure: Any, key: str, field: ConfigPart) -> np.ndarray:
     """Return (dof,) a field of a tube, its nodes moved and turned as the field says.
 
-    Raises ValueError where it moves an end that is held.
+    Raises ValueError if it moves an end that is held.
     """
     motion = (
         _rigid(structure, key, field) if field.kind == "rigid" else _spline(structure, key, field)

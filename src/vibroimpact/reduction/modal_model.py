@@ -76,13 +76,13 @@ class ModalModel:
     gap_factor: (contact_point,), times the case's gap.
     centre_offset: (contact_point, 2) m along the contact directions.
     contact_position: (contact_point, 3) m.
-    contact_laws: what the contacts have beyond the elastic circle; None for nothing.
+    contact_laws: the terms of the contacts beyond the elastic circle; None for nothing.
     preload: (contact_point,) N, force at rest of each flat land of the point, whose gap is minus
         the depth that it takes; 0 for none. integration.preload puts the obstacles there.
 
     Local elements:
 
-    element_shapes: (mode, element) along the element, relative where it has two ends.
+    element_shapes: (mode, element) along the element, relative if it has two ends.
     element_names, local_laws: their names and LocalLaws.
 
     Fluid-elastic force of a flow:

@@ -63,7 +63,7 @@ class IdentifiedModes:
         return 1.0 / (laplace**2 + laplace * self.damping[:, None] + self.omega[:, None] ** 2)
 
     def sensor_factors(self, frequency: np.ndarray) -> np.ndarray:
-        """Return (channel, line): (i omega)^n, what the sensor measures per unit displacement.
+        """Return (channel, line): (i omega)^n, the signal of the sensor per unit displacement.
 
         n is 0, 1 or 2 for displacement, velocity and acceleration; frequency (line,) in Hz.
         """

@@ -1,4 +1,4 @@
-"""Accuracy of the reduced model where the study uses it: its basis and its mesh.
+"""Accuracy of the reduced model in the states of the study: its basis and its mesh.
 
 Frequencies are compared without contact, and with every contact and local element as a spring of
 its own stiffness. Reduced against full frequencies on the same mesh give the error of the basis;
@@ -59,7 +59,7 @@ def model_accuracy(config: ConfigPart) -> list[dict[str, Any]]:
     basis_error: reduced over full, minus 1; 0 for rigid motion that is rigid in both.
     halved_mesh_Hz: of the full model with each element cut in two; NaN for matrices.
     mesh_error: full over exact, minus 1; the exact one is extrapolated from the two meshes.
-    flag: "basis" or "mesh" where that error of an excited mode is above LARGEST_ERROR, or NaN;
+    flag: "basis" or "mesh" if that error of an excited mode is above LARGEST_ERROR, or NaN;
         else "". The first elastic mode always counts as excited.
 
     There is a row for every mode in the excited band, see MODES. Empty for a structure whose model
@@ -89,7 +89,7 @@ def model_accuracy(config: ConfigPart) -> list[dict[str, Any]]:
 
 
 def require_accurate(rows: Iterable[dict[str, Any]]) -> None:
-    """Raise ModelAccuracyError where the basis misses an excited mode by more than LARGEST_ERROR.
+    """Raise ModelAccuracyError if the basis misses an excited mode by more than LARGEST_ERROR.
 
     rows: of model_accuracy.
     """
@@ -108,7 +108,7 @@ def require_accurate(rows: Iterable[dict[str, Any]]) -> None:
 
 
 def mesh_warnings(rows: Iterable[dict[str, Any]]) -> list[str]:
-    """Return a sentence about the mesh where its error is above LARGEST_ERROR, else none.
+    """Return a sentence about the mesh if its error is above LARGEST_ERROR, else none.
 
     rows: of model_accuracy.
     """
@@ -134,7 +134,7 @@ def _spring_rows(structure: Any, local_rows: np.ndarray) -> np.ndarray:
 
 
 def _spring_stiffness(structure: Any, config: ConfigPart) -> np.ndarray:
-    """Return (spring,) N/m of the contacts and local elements, 0 for what only damps or pushes."""
+    """Return (spring,) N/m of contacts and local elements, 0 for those that only damp or push."""
     dampers = np.zeros(len(getattr(structure, "dampers", ())))
     _, laws = element_laws(config.elements, dampers)
     return np.concatenate(
@@ -205,7 +205,7 @@ def _rows(
 
 
 def _relative(value: np.ndarray, reference: np.ndarray) -> np.ndarray:
-    """Return value over reference, minus 1; 0 if both are 0, infinite where one is."""
+    """Return value over reference, minus 1; 0 if both are 0, infinite if one is."""
     out = np.where(value == reference, 0.0, np.inf)
     both = (value != 0.0) & (reference != 0.0)
     out[both] = value[both] / reference[both] - 1.0

@@ -1,4 +1,4 @@
-"""What of a configuration does nothing to its model, and what drives it away without bound."""
+"""Parts of a configuration without effect on its model, and those that make it unstable."""
 
 from collections.abc import Iterator
 
@@ -14,7 +14,7 @@ ROUND_OFF = 1.0e-9
 
 
 def without_effect(model: ModalModel, excitation: ConfigPart) -> Iterator[str]:
-    """Yield a sentence for the force, each support and each element where nothing can move.
+    """Yield a sentence for the force, each support and each element at which nothing can move.
 
     excitation: section of the configuration.
     """
@@ -51,7 +51,7 @@ def _points_that_close(model: ModalModel) -> np.ndarray:
 
 
 def runaway(model: ModalModel) -> Iterator[str]:
-    """Yield a sentence where negative springs of elements win over structure and supports.
+    """Yield a sentence if negative springs of elements win over structure and supports.
 
     A cubic term that stiffens holds the motion at some amplitude: then there is none.
     """

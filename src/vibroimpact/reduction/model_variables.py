@@ -1,4 +1,4 @@
-"""What the variables of a model file are: the unit and the name of each."""
+"""The variables of a model file: the unit and the name of each."""
 
 # UDUNITS has no fractional powers, so a unit with one stands in a comment.
 PER_ROOT_KG = "in kg^-1/2: displacement in m per modal amplitude in kg^1/2 m"

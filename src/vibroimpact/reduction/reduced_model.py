@@ -48,7 +48,7 @@ ZERO_SQUARE = 1.0e-14  # of the largest squared frequency; below it a mode is ri
 
 @dataclass(frozen=True, eq=False)
 class Basis:
-    """What a structure is reduced on: omega (mode,) rad/s, shapes (dof, mode), and, of a tube, the
+    """The basis of a reduction: omega (mode,) rad/s, shapes (dof, mode), and, of a tube, the
     arc lengths of its nodes (node,) in m.
     """
 
@@ -71,7 +71,7 @@ def build_model(
     gauges: (named point, outward normal (3,)) of strain gauges on a tube. Each is one more sensor
         behind those of record.sensors, its shape a strain per unit amplitude.
     basis: of another configuration, see reduced_basis, on whose mesh the structure is built and
-        that it is reduced on; its own basis is made where None, or where its degrees of freedom are
+        that it is reduced on; its own basis is made if None, or if its degrees of freedom are
         others. A variant that differs in point masses, local elements or stops at a point needs no
         mesh and no basis of its own.
 
@@ -155,8 +155,8 @@ def _refuse_false_rigid_modes(
 ) -> None:
     """Raise ValueError when more modes have no stiffness than the ends of the tube leave free.
 
-    The round-off of elements that are very short beside the tube then exceeds its stiffness. The
-    message names the shortest one.
+    The round-off of elements that are very short compared with the tube then exceeds its
+    stiffness. The message names the shortest one.
     """
     allowed = free_rigid_motions(config.structure, structure.centreline)
     found = int(np.sum(omega == 0.0))
@@ -169,7 +169,7 @@ def _refuse_false_rigid_modes(
     raise ValueError(
         f"the reduced model has {found} modes without stiffness, the ends of the tube allow"
         f" {allowed}: the shortest element, {lengths[shortest]:.3g} m at arc length"
-        f" {structure.node_arc_length[shortest]:.4f} m, is too short beside the tube of"
+        f" {structure.node_arc_length[shortest]:.4f} m, is too short compared with the tube of"
         f" {structure.centreline.length:.4g} m: give the support there fewer points or more"
         " height_m, move it, or use structure.theory: timoshenko"
         + (", or give the ends springs that are not so soft" if soft else "")
@@ -252,7 +252,7 @@ def _force_fields(
 
 
 def _axis(config: ConfigPart) -> Sequence[float] | np.ndarray:
-    """Return the axis (3,) about which the force is turned; z where it is not."""
+    """Return the axis (3,) about which the force is turned; z if it is not."""
     if not getattr(config.excitation, "turn_deg", 0.0):
         return (0.0, 0.0, 1.0)
     nowhere = (0.0, 0.0, 0.0)  # of no need for the axis of a structure that is no tube
@@ -301,7 +301,7 @@ def _modes_in(
 
 
 def _within(groups: Sequence[DofGroup], basis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return what _modes_in does, of uncoupled groups."""
+    """Return the modes of _modes_in, of uncoupled groups."""
     omegas, columns = [], []
     for group in groups:
         own = basis[:, np.any(basis[group.dofs] != 0.0, axis=0)]
@@ -323,7 +323,7 @@ def _within(groups: Sequence[DofGroup], basis: np.ndarray) -> tuple[np.ndarray, 
 
 
 def _matrix_names(structure: ConfigPart) -> tuple[str, str]:
-    """Return what the mass and the stiffness of a structure are named in messages."""
+    """Return the names of mass and stiffness of a structure in messages."""
     if structure.kind == "matrices":
         return str(structure.mass), str(structure.stiffness)
     return "structure.masses", "structure.springs"
@@ -337,7 +337,7 @@ def keeps_all_modes(structure: Any) -> bool:
 def _modes_on(
     structure: Any, rows: np.ndarray, basis: ConfigPart, names: tuple[str, str]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return what _modes does, for rows (row, dof) of contacts and elements."""
+    """Return the modes of _modes, for rows (row, dof) of contacts and elements."""
     groups = uncoupled_groups(structure.mass, structure.stiffness, rows)
     if isinstance(structure, PointStructure):
         require_definite(((each.dofs, each.mass, each.stiffness) for each in groups), names)
@@ -365,9 +365,9 @@ def modal_basis(
     """Return (omega (mode,) rad/s ascending, shapes (dof, mode)) of the Ritz basis.
 
     Each uncoupled group is treated separately, and a shape is exactly 0.0 outside its group.
-    Frequencies above basis.free_modes_to_Hz belong to what constrained modes and attachment shapes
-    add to the free modes. These are residual vectors, not modes of the tube, and carry the local
-    flexibility at the contacts.
+    Frequencies above basis.free_modes_to_Hz belong to motion that constrained modes and attachment
+    shapes add to the free modes. These are residual vectors, not modes of the tube, and carry the
+    local flexibility at the contacts.
     """
     omegas, columns = [], []
     for group in groups:
@@ -509,8 +509,8 @@ def _outer_fibre_rows(structure: TubeStructure, name: str, place: float) -> dict
     squares is that of the outermost fibre.
 
     A round section has one entry, the two bending stresses: its worst fibre turns with the bending
-    moment. Any other has two, name_corner_1 and name_corner_2, where the two bending stresses add
-    up and where they subtract. At the opposite corners they are the same with the other sign.
+    moment. Any other has two, name_corner_1 and name_corner_2, at which the two bending stresses
+    add up and subtract. At the opposite corners they are the same with the other sign.
     """
     rows = structure.stress_rows(place)
     if structure.first_axis is None:

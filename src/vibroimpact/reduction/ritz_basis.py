@@ -51,7 +51,7 @@ class DofGroup:
     )
 
     def free_modes(self, to_Hz: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return what `eigenmodes` does, of the motion without contact; computed once."""
+        """Return the `eigenmodes` of the motion without contact; computed once."""
         if to_Hz not in self._free_modes:
             self._free_modes[to_Hz] = eigenmodes(self.stiffness, self.mass, to_Hz, self.shift)
         return self._free_modes[to_Hz]
@@ -114,7 +114,7 @@ def rigid_body_shift(stiffness: np.ndarray, mass: np.ndarray) -> float:
 
     It is 0 if the stiffness is positive definite to working precision. Otherwise it is the least
     one that raises the lowest eigenvalue, scaled to a unit diagonal, to DEFINITE_AT: a shift sized
-    by the highest frequency would swallow bending modes where an element is short.
+    by the highest frequency would swallow bending modes if an element is short.
     """
     diagonal = np.diag(stiffness)
     scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))  # a dof may be free on its own
@@ -136,7 +136,7 @@ def eigenmodes(
     1/(omega² + shift), so that round-off is relative to each mode and not to the highest one, which
     on short elements is 1e12 times the first.
 
-    shift: rigid_body_shift of the two, where it is known.
+    shift: rigid_body_shift of the two, if it is known.
     """
     if shift is None:
         shift = rigid_body_shift(stiffness, mass)
@@ -233,7 +233,7 @@ def _frequencies(
 ) -> np.ndarray:
     """Return (mode,) rad/s from eigenvalues in rad²/s².
 
-    Where there is a shift, those below the round-off of their strain energy are rigid-body motion,
+    If there is a shift, those below the round-off of their strain energy are rigid-body motion,
     exactly 0. Source of the bound: N. J. Higham, Accuracy and Stability of Numerical Algorithms
     (SIAM 2002), eq. 3.12.
 

@@ -30,7 +30,7 @@ class CaptionError(ValueError):
 
 @dataclass(frozen=True)
 class Caption:
-    """What a figure or table shows.
+    """The caption of a figure or table.
 
     name: stem of the file that is described.
     category: one of CATEGORIES.
@@ -47,8 +47,8 @@ class Caption:
 def read_caption(path: str | Path) -> Caption:
     """Return the Caption of a .rst file.
 
-    Raises CaptionError where the category is not one of CATEGORIES, or where the title or the text
-    is missing; RecordError where there is no such file.
+    Raises CaptionError if the category is not one of CATEGORIES, or if the title or the text
+    is missing; RecordError if there is no such file.
     """
     path = Path(path)
     source = read_text(path)

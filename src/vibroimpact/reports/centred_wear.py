@@ -1,4 +1,4 @@
-"""What centred obstacles do to wear, in a sentence: for figures and page."""
+"""The effect of centred obstacles on wear, in a sentence: for figures and page."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .number_text import digits
 
 
 def centred_sentence(imperfection: float, offset_m: Any, gap_m: float) -> str:
-    """Return what centred obstacles do to the wear work rate, "" for obstacles off centre.
+    """Return the effect of centred obstacles on the wear work rate, "" for obstacles off centre.
 
     imperfection: largest random offset over the gap. offset_m: stated offsets. gap_m: smallest gap.
     """
@@ -20,9 +20,9 @@ def centred_sentence(imperfection: float, offset_m: Any, gap_m: float) -> str:
         return ""
     return (
         f"The obstacles are centred to {digits(imperfection)} of the gap: while the motion stays in"
-        " the plane of the force hardly anything slides, and where it leaves that plane the wear"
+        " the plane of the force hardly anything slides, and once it leaves that plane the wear"
         " work rate rises by decades. A real tube is off centre: state supports.centre_offset_m"
-        " where wear at low loads counts."
+        " if wear at low loads counts."
     )
 
 

@@ -1,8 +1,8 @@
 """The report of one campaign as a single HTML file with embedded figures.
 
-It tells one story: what was concluded and how sure, where model and measurement part, the law that
-the records demand, the effect with its values, what adding it does on records that took no part,
-what was ruled out and why, and what would separate what is left.
+The page shows the conclusion and its probability, the places of the largest differences, the law
+that the records demand, the effect with its values, its gain on records that took no part,
+the explanations ruled out and why, and the measurement that would separate the rest.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ SPLITS = {
     "fit": "fitted",
 }
 HEADINGS = {
-    "named": "What is missing",
-    "partly_explained": "What is missing, as far as it is known",
+    "named": "The missing effect",
+    "partly_explained": "A part of the missing effects",
     "ambiguous": "The most probable of them",
 }
 # Section of the page by the figure's name; others go to what adding the effect does.
@@ -68,7 +68,7 @@ def discrepancy_page(
     verdict: its Verdict.
     figures: PNG files in their order, each with its caption in a .txt file of the same name.
     floor: meaning of the floor of the misfit, FREE_RUNS or NOISE.
-    model: path of the completed model, model_updated.yaml beside the page where None.
+    model: path of the completed model, model_updated.yaml beside the page if None.
     """
     tests = [
         f"{test}, {TESTS[test]}" if test in TESTS else str(test)
@@ -164,7 +164,7 @@ def _checks(verdict):
 
 
 def _stages(verdict):
-    """Return the Table of the cost of the stages, without rows where it is not known."""
+    """Return the Table of the cost of the stages, without rows if it is not known."""
     stages = {} if verdict.cost is None else verdict.cost.by_stage
     return table_of(
         {
@@ -183,7 +183,7 @@ def _effects(verdict):
         known = EFFECTS.get(effect.id)
         head = {
             "effect": effects_in_words([effect.id]),
-            "what it does": known.explanation if known else "",
+            "mechanism": known.explanation if known else "",
             "family": effect.family or "",
             "law fits": effect.law_fits or "",
             "where": _where(effect.location or "all", known),
@@ -208,7 +208,7 @@ def _effects(verdict):
 
 
 def _interval(value):
-    """Return "0.128 to 0.171", "not known" where an end is missing."""
+    """Return "0.128 to 0.171", "not known" if an end is missing."""
     if value["low"] is None or value["high"] is None:
         return "not known"
     return f"{digits(value['low'])} to {digits(value['high'])}"
@@ -258,7 +258,7 @@ def _regions(verdict):
 
 
 def _signed(value):
-    """Return a number with its sign, - where there is none."""
+    """Return a number with its sign, - if there is none."""
     return "-" if value is None else f"{value:+.1f}"
 
 

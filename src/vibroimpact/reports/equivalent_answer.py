@@ -25,7 +25,7 @@ class Value:
 
     value, low, high: N/m or N s/m; NaN if not resolved.
     agreement: one of method_agreement.VERDICTS.
-    reason: why it is not resolved, or what else is to be known; empty for nothing.
+    reason: why it is not resolved, or further remarks; empty for nothing.
     methods: medians of the compared methods that resolve it.
     """
 
@@ -53,7 +53,7 @@ class Value:
 class Answer:
     """The equivalent support of one gap (m), load (N RMS), group of supports and direction.
 
-    bound: N/m, what k is below where it does not differ from 0; NaN otherwise.
+    bound: N/m, the upper bound of k if it does not differ from 0; NaN otherwise.
     touching: share of time in contact; NaN if not known.
     """
 

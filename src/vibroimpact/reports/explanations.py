@@ -27,14 +27,14 @@ class Explanation:
 
 
 def not_explained(verdict: Verdict) -> str:
-    """Return what an unexplained rest is, in words after "something"."""
+    """Return the name of an unexplained rest, in words after "something"."""
     return f"that {'could not be run, or ' if verdict.not_run else ''}is not in the catalogue"
 
 
 def explanations_of(verdict: Verdict) -> list[Explanation]:
     """Return the Explanations worth a row, at all places together, the most probable first.
 
-    Empty where no probabilities are known, or where they speak against the verdict: an effect of
+    Empty if no probabilities are known, or if they speak against the verdict: an effect of
     100 % has no place under a verdict that names none.
     """
     known: dict[tuple[str, ...], float] = {}

@@ -1,4 +1,4 @@
-"""Measured frequency responses beside those of a linear model: modes, channels, units."""
+"""Measured frequency responses against those of a linear model: modes, channels, units."""
 
 from __future__ import annotations
 
@@ -76,11 +76,11 @@ def lowest_responses(campaign: xr.Dataset) -> Transfer:
 def linear_comparison(
     config: Config, campaign: xr.Dataset, spectra: Transfer
 ) -> tuple[list[dict], list[dict]]:
-    """Return (modes, checks) of measured responses per force channel 0 beside the linear model.
+    """Return (modes, checks) of measured responses per force channel 0 against the linear model.
 
     modes: a row of COLUMNS for each mode that is measured, NaN if the model has none near.
     checks: rows of compare_with_model.
-    campaign: where the channels and the force are. spectra: of its lowest record.
+    campaign: with the places of channels and force. spectra: of its lowest record.
     """
     model = attach(config, campaign)
     kinds = [str(kind) for kind in campaign["channel_kind"].values]

@@ -1,4 +1,4 @@
-"""What the page of a measured tube says."""
+"""The content of the page of a measured tube."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LEVELS = {"load_rms_N": ("Load", "N", 1.0), "response_rms_m": ("Response", "mm",
 
 @dataclass(frozen=True)
 class MeasuredContent(StudyContent):
-    """What is said of a measured tube, in the place of a study.
+    """The content of the page of a measured tube, in the place of a study.
 
     campaign: its name. records: how many were read. level: of LEVELS. notes: sentences on what was
     taken for what.
@@ -49,7 +49,7 @@ class MeasuredContent(StudyContent):
         return f"{LEVELS[self.level][0]} ({self.unit} RMS)"
 
     def run(self) -> str:
-        """Return what was measured and compared."""
+        """Return the sentences on measurement and comparison."""
         own = sorted({row.load_rms_N for row in self.answers})
         gaps = ", ".join(digits(1e3 * gap) for gap in sorted({row.gap_m for row in self.answers}))
         return (

@@ -2,12 +2,12 @@
 
 
 def digits(value: float | None) -> str:
-    """Return a number with 3 digits, whole up to 100000, - where there is none."""
+    """Return a number with 3 digits, whole up to 100000, - if there is none."""
     if value is None or value != value:
         return "-"
     return f"{value:.0f}" if 1e3 <= abs(value) < 1e5 else f"{value:.3g}"
 
 
 def percent(fraction: float | None) -> str:
-    """Return a share in whole per cent, - where there is none."""
+    """Return a share in whole per cent, - if there is none."""
     return "-" if fraction is None or fraction != fraction else f"{100 * fraction:.0f} %"

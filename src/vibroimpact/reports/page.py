@@ -19,7 +19,7 @@ def rendered(template: str, **values: Any) -> str:
     """Return a page.
 
     template: name of a file of this folder that extends page.html.
-    values: what it shows.
+    values: those shown.
     """
     environment = Environment(
         loader=FileSystemLoader(FOLDER),

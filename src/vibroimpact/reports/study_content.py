@@ -40,7 +40,7 @@ MOST_LOADS = 8  # of a table of statistics, per gap
 
 @dataclass(frozen=True)
 class Provenance:
-    """Where the numbers come from.
+    """The origin of the numbers.
 
     configuration: the configuration as it ran, as YAML.
     version: of the library.
@@ -98,13 +98,13 @@ def provenance(
 
 @dataclass(frozen=True)
 class StudyContent:
-    """What is said of a study.
+    """The content of the page of a study.
 
     config: its configuration.
     answers: empty for a study without identification.
     limits: {residual: largest accepted value}.
     unmoved: (group of supports, direction) that the force does not move.
-    warnings: sentences on what makes numbers wrong or doubtful as they stand.
+    warnings: sentences on causes that make numbers wrong or doubtful.
     worn: WearRows of a study with a wear life.
     """
 
@@ -137,7 +137,7 @@ class StudyContent:
         return len(places) > 1 or any(group != ALL_SUPPORTS for group, _ in places)
 
     def run(self) -> str:
-        """Return what was run."""
+        """Return the sentences on the run."""
         return run_sentence(self.config, self.statistics)
 
     def headline(self) -> list[str]:
@@ -145,7 +145,9 @@ class StudyContent:
         sentences = headline(self.config, self.answers)
         if self.unmoved:
             places = ", ".join(f"{group} in {direction}" for group, direction in self.unmoved)
-            sentences.append(f"No answer where the force moves no support: {places}.")
+            sentences.append(
+                f"No answer along directions in which the force moves no support: {places}."
+            )
         return [*energy_sentences(self.config, self.statistics), *sentences]
 
     def contact(self) -> list[str]:

@@ -75,7 +75,7 @@ def answer_table(answers: Sequence[Answer], several: bool, unit: str) -> Table:
 
 
 def agreement_in_words(row: Answer, quantity: str) -> str:
-    """Return what the methods say of k or c, in a few words."""
+    """Return the result of the methods on k or c, in a few words."""
     value: Value = getattr(row, quantity)
     if row.bounded:
         return "upper bound" if quantity == "k" else "no contact to tell"
@@ -103,7 +103,7 @@ def reason_table(
 ) -> Table:
     """Return why values are not resolved or differ, a row per run of loads with the same reason.
 
-    k and c share a row where they share the reason. The share of time in contact tells whether
+    k and c share a row if they share the reason. The share of time in contact tells whether
     there was a support to see.
     """
     places = ("supports", "direction") if several else ()
@@ -145,7 +145,7 @@ def _kind(row: Answer, quantity: str) -> tuple[str, str, str] | None:
 
 
 def _reason(reasons: Sequence[str], load: float, unit: str) -> str:
-    """Return the reason of a run of loads; that of its first load where the numbers change."""
+    """Return the reason of a run of loads; that of its first load if the numbers change."""
     if len(set(reasons)) == 1:
         return reasons[0]
     return f"{reasons[0]} (at {digits(load)} {unit} RMS, likewise at the others)"
@@ -254,7 +254,7 @@ def _scaled(spread: Spread, factor: float) -> Spread:
 
 
 def energy_table(statistics: StudyStatistics, limits: Mapping[str, float], unit: str) -> Table:
-    """Return the worst energy residual of all cases beside what is accepted."""
+    """Return the worst energy residual of all cases and the accepted one."""
     rows = []
     for quantity in RESIDUALS:
         value, gap, load = statistics.largest(quantity)

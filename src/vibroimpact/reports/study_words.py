@@ -1,4 +1,4 @@
-"""What a study ran and what it found, in sentences."""
+"""The runs and the results of a study, in sentences."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def stiffness_unit(values: Sequence[float]) -> tuple[str, float]:
 
 
 def run_sentence(config: Any, statistics: StudyStatistics) -> str:
-    """Return what was run: structure, supports, force, loads, gaps and seeds."""
+    """Return the sentences on the run: structure, supports, force, loads, gaps and seeds."""
     supports = len(config.supports)
     held = f" with {supports} gap support{'s' * (supports != 1)}" if supports else ""
     loads, gaps, seeds = statistics.loads, statistics.gaps, config.grid.seeds
@@ -127,7 +127,7 @@ def headline(config: Any, answers: Sequence[Answer], unit: str = "") -> list[str
 
 
 def _agreement(answers: Sequence[Answer], quantity: str, several: bool) -> str:
-    """Return how many cases agree, and what the others are."""
+    """Return how many cases agree, and the state of the others."""
     values = [getattr(row, quantity) for row in answers]
     kinds = [
         "bounded" if row.bounded else value.agreement
@@ -139,11 +139,11 @@ def _agreement(answers: Sequence[Answer], quantity: str, several: bool) -> str:
 
 
 def _readings(config: Any, answers: Sequence[Answer], several: bool) -> list[str]:
-    """Return what each method reads, and what the broadband comparison adds."""
+    """Return the data that each method reads, and the contribution of the broadband one."""
     if several:
         return [
             "The broadband comparison and the shapes both read the whole band; the pole only"
-            " corrects what the broadband comparison finds."
+            " corrects the result of the broadband comparison."
         ]
     others = [
         row.k.methods["broadband"] / (0.5 * (row.k.methods["lscf"] + row.k.methods["ods"])) - 1.0
@@ -246,7 +246,7 @@ def energy_sentences(config: Any, statistics: StudyStatistics) -> list[str]:
 
 
 def contact_sentences(config: Any, statistics: StudyStatistics) -> list[str]:
-    """Return what is to be known of contact, wear and stress."""
+    """Return the remarks on contact, wear and stress."""
     sentences = []
     touching, gap, load = statistics.largest("contact_fraction")
     if math.isfinite(touching):

@@ -1,4 +1,4 @@
-"""The words of a verdict: its sentence, why candidates were ruled out, and what to do next."""
+"""The words of a verdict: its sentence, why candidates were ruled out, and the next steps."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def verdict_sentence(verdict: Verdict) -> str:
         ),
         "unknown": (
             f"The model and the measurement disagree, and no effect {_tried(verdict)} explains it:"
-            f" the figures say where to look.{nearest}"
+            f" the figures show the largest differences.{nearest}"
         ),
         "not_testable": f"The campaign can not be judged. {refusals}".strip(),
     }
@@ -60,7 +60,7 @@ def verdict_sentence(verdict: Verdict) -> str:
 
 
 def _how_sure(verdict):
-    """Return the probability of what a verdict says, as a sentence; empty if it is not known."""
+    """Return the probability of a verdict as a sentence; empty if it is not known."""
     ids = effects_in_words(sorted(effect.id for effect in verdict.effects))
     wanted = NOTHING if verdict.verdict == "none" else ids
     rows = [row for row in explanations_of(verdict) if row.words == wanted]
@@ -90,7 +90,7 @@ def _nothing_missing(verdict):
         return f"No effect is missing: the model explains the campaign within chance {told}."
     return (
         f"No effect is found: the differences are beyond chance {told}, and no larger than those"
-        " between two right models of one structure, which may differ in what no record tells,"
+        " between two right models of one structure, which may differ in undetermined quantities,"
         " such as damping."
     )
 
@@ -124,7 +124,7 @@ def _with_parameters(effect):
 
 
 def withdrawn_sentence(verdict: Verdict) -> str:
-    """Return what was tried and is not offered, empty if that is nothing."""
+    """Return the effects that were tried and are not offered, empty if there are none."""
     if verdict.withdrawn is None:
         return ""
     misfit, tried = (
@@ -144,7 +144,7 @@ def withdrawn_sentence(verdict: Verdict) -> str:
 
 
 def where_it_shows(verdict: Verdict) -> str:
-    """Return what the table of regions means, or why there is none; empty if none was sought."""
+    """Return the meaning of the table of regions or the reason of its absence, or nothing."""
     if verdict.regions:
         return (
             f"{len(verdict.regions)} bands differ by more than chance, the strongest first. z"
@@ -157,7 +157,7 @@ def where_it_shows(verdict: Verdict) -> str:
             "Nowhere: the records together are within chance, and no band is singled out. The"
             " largest differences of many are always of some size."
         )
-    return "No band is beyond chance by itself: what differs is spread over many."
+    return "No band is beyond chance by itself: the difference is spread over many."
 
 
 def judgement(verdict: Verdict, row: dict, first: bool) -> str:
@@ -175,7 +175,7 @@ def judgement(verdict: Verdict, row: dict, first: bool) -> str:
     if ids == shown:
         return "the same at another place, which explains less"
     if ids in [sorted(row) for row in verdict.ambiguity_set]:
-        return "not told apart from it"
+        return "not distinguished from it"
     if row.get("probability") is not None and shown:
         return "less probable, by the records that were fitted"
     if score is None:
@@ -190,34 +190,36 @@ def judgement(verdict: Verdict, row: dict, first: bool) -> str:
 
 
 def next_steps(verdict: Verdict, model: str) -> list[dict]:
-    """Return [{words, command}] of what to do next; command: None if there is none.
+    """Return [{words, command}] of the next steps; command: None if there is none.
 
     model: path of the completed model.
     """
     if verdict.verdict == "not_testable":
-        return [_step("Mend what the checks refuse, then give the same command again.")]
+        return [
+            _step("Correct the faults that the checks refuse, then give the same command again.")
+        ]
     if verdict.verdict == "none":
         known = " by the effects that could be run" if verdict.not_run else ""
         return [_step(f"Nothing: the model stands as it is for records like these{known}.")]
     if not verdict.shown_effects():
         return [
             _step(
-                "No completed model is offered. Look where the figures show the largest"
+                "No completed model is offered. Look at the places of the largest"
                 " differences: at the supports, lengths and sensors there."
             ),
-            _step("Ask what the records alone tell:", "discrepancy", "FILE model=identified"),
+            _step("Try a model from the records alone:", "discrepancy", "FILE model=identified"),
         ]
     which = " most probable" if verdict.verdict == "ambiguous" else ""
     steps = [
         _step(f"Run the study with the{which} completed model:", configfile=model),
         _step(
-            "See what it still misses, by this campaign or by another one:",
+            "Diagnose the completed model, by this campaign or by another one:",
             "discrepancy",
             f"FILE model={model}",
         ),
     ]
     if verdict.verdict == "partly_explained":
-        steps.insert(0, _step("Look at what the completed model still leaves, by sensor and band."))
+        steps.insert(0, _step("Look at the differences that remain, by sensor and band."))
     return steps
 
 

@@ -1,1 +1,1 @@
-"""Averaged spectra, what their window does, and records of whole periods line by line."""
+"""Averaged spectra, the effect of their window, and records of whole periods line by line."""

@@ -21,7 +21,7 @@ EXCITED = 0.05  # of the largest line in the band; a line below it is not excite
 
 
 class PeriodError(ValueError):
-    """A record that is not periodic; the message says what was tried and the remedy."""
+    """A record that is not periodic; the message states the periods tried and the remedy."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""Write what linear supports predict of the study: one k and c for all, and each its own."""
+"""Write the predictions of linear supports for the study: one k and c for all, and each its own."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ from vibroimpact.study.equivalent_table import EQUIVALENT_COLUMNS
 
 
 def make(given: Any, made: Any, params: Any) -> None:
-    """Write what linear supports predict of the study: one k and c for all, and each its own.
+    """Write the predictions of linear supports for the study: one k and c for all, and each its
+    own.
 
     given: model, equivalent, records, spectra. made: table, one. params: config.
     """

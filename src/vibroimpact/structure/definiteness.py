@@ -20,7 +20,7 @@ def require_definite(
     """Raise IndefiniteMatrixError unless mass is positive definite and stiffness not negative.
 
     groups: (dofs (dof,), mass (dof, dof), stiffness (dof, dof)) of uncoupled parts of a structure.
-    names: what the mass and the stiffness are named in the message, such as their files.
+    names: of the mass and the stiffness in the message, such as their files.
     """
     for dofs, mass, stiffness in groups:
         _require_mass(dofs, mass, names[0])
@@ -50,7 +50,7 @@ def _require_mass(dofs: np.ndarray, mass: np.ndarray, name: str) -> None:
 def _require_stiffness(
     dofs: np.ndarray, mass: np.ndarray, stiffness: np.ndarray, name: str
 ) -> None:
-    """Raise IndefiniteMatrixError where some motion has less strain energy than round-off.
+    """Raise IndefiniteMatrixError if some motion has less strain energy than round-off.
 
     The sum of n products has an error of n epsilon times the sum of their absolute values at most:
     N. J. Higham, Accuracy and Stability of Numerical Algorithms (SIAM 2002), eq. 3.5. A lower sum
@@ -69,6 +69,6 @@ def _require_stiffness(
             f"{name}: has a negative eigenvalue, {square:.6g} rad²/s² or less"
             f" (-({np.sqrt(-square) / (2.0 * np.pi):.4g} Hz)², most of it at dof"
             f" {dofs[np.argmax(np.abs(vectors[:, 0]))]}): the structure runs away without a force;"
-            " check the sign and the order of its rows, or, where it can move freely, write it with"
+            " check the sign and the order of its rows, or, if it can move freely, write it with"
             " all digits"
         )

@@ -95,7 +95,7 @@ def added_mass_coefficients(confinement: ConfigPart, section: ConfigPart) -> tup
 def equivalent_diameter_ratio(confinement: ConfigPart, section: ConfigPart) -> float:
     """Return De/D: the diameter of the channel that confines as much, over that of the tube.
 
-    Infinite where nothing confines the fluid. Source: Pettigrew and Taylor (2003).
+    Infinite if nothing confines the fluid. Source: Pettigrew and Taylor (2003).
     """
     diameter = outer_width(section)
     if confinement.kind == "annulus":
@@ -117,7 +117,7 @@ def viscous_damping_ratio(
     """Return the damping ratio by viscosity of a round tube in still fluid at frequencies in Hz.
 
     pi / sqrt(8) (rho D² / m) sqrt(2 nu / (pi f D²)) (1 + (D/De)³) / (1 - (D/De)²)². It holds for a
-    boundary layer that is thin compared with the gap to what confines the fluid. Source: Rogers,
+    boundary layer that is thin compared with the gap of the fluid. Source: Rogers,
     Taylor and Pettigrew (1984); Pettigrew and Taylor (2003).
 
     diameter: D in m.

@@ -1,13 +1,13 @@
 """Condensation of the directions in which a structure has no mass.
 
 A superelement or a lumped mass leaves degrees of freedom, or combinations of them, without mass.
-With N the directions without mass and Q the rest, x = Q q + N b, they follow at rest where no force
+With N the directions without mass and Q the rest, x = Q q + N b, they follow at rest if no force
 acts on them:
 
     N^T K (Q q + N b) = 0,    T = Q - N (N^T K N)^+ N^T K Q,    x = T q + R r.
 
 T^T K N = 0, so that T q has the modes of the structure exactly. A force on a named point may act on
-N. The static shapes R of unit forces there are kept beside, K-orthonormal, with the mass that puts
+N. The static shapes R of unit forces there are kept too, K-orthonormal, with the mass that puts
 them at the highest frequency of T q: below, they are a flexibility. A direction with neither mass
 nor stiffness is held at zero. R. J. Guyan, Reduction of stiffness and mass matrices, AIAA Journal 3
 (1965) 380; residual flexibility: R. R. Craig and A. J. Kurdila, Fundamentals of Structural Dynamics
@@ -33,7 +33,7 @@ NO_SHAPE = 1.0e-6  # of the largest: a smaller static shape adds nothing
 
 @dataclass(frozen=True, eq=False)
 class Condensed:
-    """What is left of a structure.
+    """The condensed structure.
 
     recovery (all dofs, dof): displacement of the original dofs per unit dof: T, then R.
     kept (all dofs, dof): orthonormal basis of the directions with mass: Q, then zeros.
@@ -53,7 +53,7 @@ class Condensed:
         return sparse.csr_array(0.5 * (reduced + reduced.T))
 
     def told(self) -> str:
-        """Return a sentence on what was condensed."""
+        """Return a sentence on the condensed directions."""
         count = self.massless.shape[1]
         most = np.flatnonzero(np.sum(self.massless**2, axis=1) > 0.5)
         listed = ", ".join(map(str, most[:SHOWN])) + (", ..." if most.size > SHOWN else "")
@@ -67,8 +67,8 @@ class Condensed:
 def condense_massless(
     mass: sparse.csr_array, stiffness: sparse.csr_array, named: Sequence[int]
 ) -> Condensed | None:
-    """Return the Condensed structure; None if every direction has mass, where there are too many
-    degrees of freedom, or where the mass, or the stiffness of a direction without mass, is
+    """Return the Condensed structure; None if every direction has mass, if there are too many
+    degrees of freedom, or if the mass, or the stiffness of a direction without mass, is
     negative, which is refused later.
 
     mass, stiffness (dof, dof): symmetric.
@@ -128,7 +128,7 @@ def _directions(mass: sparse.csr_array) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _split(mass: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return what _directions does, of dofs that the mass couples: unit vectors where all
+    """Return the directions of _directions, of dofs that the mass couples: unit vectors if all
     directions are of one kind.
     """
     whole, nothing = np.eye(len(mass)), np.zeros((len(mass), 0))

@@ -28,7 +28,7 @@ OP4_SETS = ("gg", "nn", "ff", "aa", "ll", "xx")
 
 
 class MatrixFileError(ForeignFileError):
-    """A matrix file that cannot be used; the message names it, what it holds and the remedy."""
+    """A matrix file that cannot be used; the message names it, its content and the remedy."""
 
 
 def read_matrix(path: str | Path, name: str, op4_set: str | None = None) -> sparse.csr_array:
@@ -36,7 +36,7 @@ def read_matrix(path: str | Path, name: str, op4_set: str | None = None) -> spar
 
     name: mass, stiffness or damping; it chooses among several arrays. A MatrixMarket file or a
         scipy.sparse .npz holds one matrix.
-    op4_set: the set of Nastran in an OP4 file, such as aa, and its number where there are several:
+    op4_set: the set of Nastran in an OP4 file, such as aa, and its number if there are several:
         aa2.
 
     Raises MatrixFileError.
@@ -44,7 +44,7 @@ def read_matrix(path: str | Path, name: str, op4_set: str | None = None) -> spar
     path = Path(path)
     if not path.is_file():
         raise MatrixFileError(
-            f"{path}: no such file: give its path from the folder where the study is run"
+            f"{path}: no such file: give its path from the folder in which the study is run"
         )
     if path.suffix.lower() not in READERS:
         raise MatrixFileError(f"{path}: ends in none of {', '.join(READERS)}")
@@ -69,7 +69,7 @@ def _real(path: Path, name: str, matrix: Any) -> sparse.csr_array:
         matrix = sparse.csr_array(matrix)
     if matrix.dtype.kind == "c":
         raise MatrixFileError(
-            f"{path}: {name} is complex: give its real part, and what damps as a damping matrix or"
+            f"{path}: {name} is complex: give its real part, and the damping as a damping matrix or"
             " as damping ratios"
         )
     if matrix.dtype.kind not in "fiu":
@@ -93,7 +93,7 @@ def _require_shape(path: Path, name: str, shape: tuple[int, ...]) -> None:
 
 
 def _symmetric(path: Path, name: str, matrix: sparse.csr_array) -> sparse.csr_array:
-    """Return a matrix with exactly equal halves. Raises MatrixFileError where they differ."""
+    """Return a matrix with exactly equal halves. Raises MatrixFileError if they differ."""
     largest = abs(matrix).max()
     if abs(matrix - matrix.T).max() > 1e-8 * largest:
         raise MatrixFileError(f"{path}: {name} is not symmetric: give both halves, in SI units")

@@ -62,7 +62,7 @@ def _header(path: str | Path, line: str) -> tuple[str, bool]:
     layout, field, symmetry = words[2:]
     if field == "complex":
         raise ForeignFileError(
-            f"{path}: is complex: give its real part, and what damps as a damping matrix or as"
+            f"{path}: is complex: give its real part, and the damping as a damping matrix or as"
             " damping ratios"
         )
     if layout not in ("array", "coordinate") or field not in FIELDS or symmetry not in SYMMETRIES:
@@ -118,7 +118,7 @@ def _places(path: str | Path, values: np.ndarray, rows: int) -> tuple[np.ndarray
 def _require_each_once(
     path: str | Path, row: np.ndarray, column: np.ndarray, symmetric: bool
 ) -> None:
-    """Raise where a place is given twice; in a symmetric matrix, also in the other half."""
+    """Raise if a place is given twice; in a symmetric matrix, also in the other half."""
     low, high = (np.minimum(row, column), np.maximum(row, column)) if symmetric else (row, column)
     order = np.lexsort((high, low))
     low, high = low[order], high[order]

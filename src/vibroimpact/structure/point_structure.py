@@ -27,7 +27,7 @@ class PointStructure:
     contact: the ContactPoints of its supports.
     contact_points: per contact point, the names of its point and of the other point, None for the
         ground.
-    condensed: where directions without mass were condensed; `directions` counts the original dofs.
+    condensed: if directions without mass were condensed; `directions` counts the original dofs.
     """
 
     mass: sparse.csr_array
@@ -47,7 +47,7 @@ class PointStructure:
     def point_rows(self, name: str) -> np.ndarray:
         """Return (3, dof): the displacement of a named point along x, y and z per unit dof.
 
-        Rows are zero where the point has no dof. Raises ValueError for an unknown point.
+        Rows are zero if the point has no dof. Raises ValueError for an unknown point.
         """
         if name not in self.directions:
             raise ValueError(
@@ -64,7 +64,7 @@ class PointStructure:
     def contact_rows(self) -> np.ndarray:
         """Return (contact_point, 2, dof): displacement along the two directions of contact.
 
-        It is relative where a contact point has two ends.
+        It is relative if a contact point has two ends.
         """
         rows = [
             self.point_rows(one) - (self.point_rows(other) if other else 0.0)
@@ -96,7 +96,7 @@ class IdentifiedStructure(PointStructure):
     """A structure known by its measured modes; its dofs are modal amplitudes in kg^1/2 m.
 
     rows: {point: (3, dof)} in kg^-1/2, the mode shapes at the points.
-    directions: {point: {axis: axis number}}, what was measured.
+    directions: {point: {axis: axis number}} of the measurement.
     """
 
     rows: dict

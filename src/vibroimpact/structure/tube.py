@@ -26,7 +26,7 @@ STRUCTURES = Memo()
 
 @dataclass(frozen=True, eq=False)
 class TubeStructure:
-    """The linear tube without contact. A dof is what the ends leave free.
+    """The linear tube without contact. A dof is a direction that the ends leave free.
 
     centreline, contact: its Centreline and ContactPoints.
     beam: its Beam, without fluid.
@@ -39,7 +39,7 @@ class TubeStructure:
         global axes) are transformation @ dofs.
     inertia: (3, dof) kg, minus the force on the dofs per unit acceleration of both ends along x, y,
         z, in fluid that stays in space.
-    carried_inertia: (3, dof) kg, what `inertia` loses where the fluid outside moves with the ends:
+    carried_inertia: (3, dof) kg, the loss of `inertia` if the fluid outside moves with the ends:
         its added mass, and the mass of fluid that the tube displaces.
     viscous: (dof, dof) sparse, N s/m, damping by the fluid outside at 1 Hz; it grows with the
         square root of the frequency.
@@ -273,7 +273,7 @@ def _fluid_matrices(
     frames: tuple[np.ndarray, np.ndarray],
 ) -> tuple[sparse.csr_array, sparse.csr_array]:
     """Return (carried, viscous), each (node dof, node dof): the masses in kg that a fluid outside
-    takes off where it moves with the ends, and its damping in N s/m at 1 Hz. Both act across the
+    takes off if it moves with the ends, and its damping in N s/m at 1 Hz. Both act across the
     tube only.
     """
     size = DOF_PER_NODE * (len(middles) + 1)

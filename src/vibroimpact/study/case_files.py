@@ -1,4 +1,4 @@
-"""Files of cases, read with a check that they hold what their names say."""
+"""Files of cases, read with a check that their content fits their names."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ COLUMNS = frozenset(table_rows([unresolved("", "")], {"load_rms_N": 1, "gap_m": 
 def read_case(path: str | Path, names: Iterable[str] | None = None) -> xr.Dataset:
     """Return the dataset of results/<study>/<kind>/<case>.nc; names as in records.read_record.
 
-    Raises RecordError where it cannot be read, or is of another case or study.
+    Raises RecordError if it cannot be read, or is of another case or study.
     """
     path, dataset = Path(path), read_record(path, names)
     for what, expected in (("case", path.stem), ("study", path.parent.parent.name)):

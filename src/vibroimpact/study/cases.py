@@ -94,7 +94,7 @@ def batches(
     A decade of loads is cut into `bins_per_decade` bins at fixed places. The cases of a bin are a
     batch; one of more than `cases_per_job` is halved, and its halves again. Seeds are taken in
     blocks of SEEDS_PER_JOB. An added load or seed thus changes the batch that it falls into, and no
-    other, and the number of jobs grows with the grid only where jobs would become too long.
+    other, and the number of jobs grows with the grid only if jobs would become too long.
 
     A batch is named after its lowest load, e.g. from_0.5, and with several blocks of seeds after
     its first seed too. Its cases are in the order of all_cases.

@@ -45,12 +45,12 @@ def equivalent_rows(summary: list[dict], unreached: Sequence[tuple[str, str]] = 
     """Return the rows of equivalent.csv from those of consistency_summary.csv.
 
     A stiffness needs two of the three compared methods, a damping one of the two. With several
-    supports the pole only corrects what the spectra say, so that the two are one reading: the shape
-    must then resolve the stiffness too, if it does so at any load. low and high are the smallest
-    and largest value of these methods over all seeds. Where methods differ by more than 25 % with
-    disjoint intervals there is no recommended value. Where a value is not resolved, it is NaN and
-    the reason says why; k_bound (N/m) is what k is below where it does not differ from 0. flag:
-    what makes the values of the compared methods doubtful.
+    supports the pole only corrects the result of the spectra, so that the two are one reading: the
+    shape must then resolve the stiffness too, if it does so at any load. low and high are the
+    smallest and largest value of these methods over all seeds. If methods differ by more than 25 %
+    with disjoint intervals there is no recommended value. If a value is not resolved, it is NaN and
+    the reason says why; k_bound (N/m) is the upper bound of k if it does not differ from 0. flag:
+    the doubts about the values of the compared methods.
 
     unreached: (group, direction) that the force does not move; they get rows without values.
     """
@@ -129,7 +129,7 @@ def recommended(spans: Mapping[str, Span], agreement: str) -> Span:
 
 
 def _bound(methods: dict[str, dict], spans: Mapping[str, Span]) -> float:
-    """Return what k is below: the least bound of a method, and what others resolve."""
+    """Return the upper bound of k: the least bound of a method, and what others resolve."""
     bounds = [float(methods[name].get("k_bound", np.nan)) for name in spans]
     bounds = [value for value in bounds if np.isfinite(value)]
     resolved = [span[2] for span in spans.values() if np.isfinite(span[0])]

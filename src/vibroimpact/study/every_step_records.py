@@ -1,6 +1,6 @@
 """Short runs recorded at every step, as `record.every_step` asks.
 
-They begin at the initial state, without start-up and without output filter. Where a support presses
+They begin at the initial state, without start-up and without output filter. If a support presses
 at rest, the initial state is added to static equilibrium.
 """
 

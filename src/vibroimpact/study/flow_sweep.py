@@ -1,4 +1,4 @@
-"""A tube with gaps in flows of rising velocity, beside the linear tubes that stand for it.
+"""A tube with gaps in flows of rising velocity, and the linear tubes that stand for it.
 
 Each run has one turbulent load and one velocity. It starts at rest, or with a motion of several
 gaps: where the two differ, the tube has two ways to vibrate. The runs without flow give k and c of
@@ -41,7 +41,7 @@ SEARCHED = 3.0  # times the highest velocity, up to which critical velocities ar
 
 @dataclass(frozen=True)
 class FlowRun:
-    """One run, in SI units; an infinite response where it grew without bound.
+    """One run, in SI units; an infinite response if it grew without bound.
 
     start: small or large. rms: of the point of the shape line that moves most. contact_fraction: of
     the support that is touched most. wear_work_rate: of all supports. fluid_power: from the flow.
@@ -89,7 +89,7 @@ class Cycle:
 
 @dataclass(frozen=True)
 class FlowSweep:
-    """All runs, what the linear tubes predict, and the limit cycles without turbulence."""
+    """All runs, the predictions of the linear tubes, and the limit cycles without turbulence."""
 
     runs: tuple[FlowRun, ...]
     onsets: tuple[Onset, ...]

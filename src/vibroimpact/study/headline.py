@@ -1,4 +1,4 @@
-"""The headline of a study, and what its tables flag."""
+"""The headline of a study, and the flags of its tables."""
 
 from __future__ import annotations
 

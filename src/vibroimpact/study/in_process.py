@@ -47,7 +47,7 @@ def simulate_case(
     load_rms_N: RMS of the force, N.
     gap_m: radial clearance of the supports without one of their own, m.
     seed: of the force and the imperfections, from 0.
-    duration_s: of the record, s; that of the configuration where None.
+    duration_s: of the record, s; that of the configuration if None.
     Raises ConfigError for values that the configuration may not have, IntegrationError, ForceError.
     """
     values: dict[str, Any] = {
@@ -100,14 +100,14 @@ def identify_support(
 
     config: a Config, or the path of a file.
     record: of simulate_case, or read from results/<study>/records.
-    spectra: of case_spectra, or read from results/<study>/spectra; made from the record where None.
+    spectra: of case_spectra, or read from results/<study>/spectra; made from the record if None.
     Raises ValueError for a configuration without identification, and for a record without time
-    series where the spectra are not given.
+    series if the spectra are not given.
     """
     config = config_of(config)
     if config.identification is None:
         raise ValueError(
-            f"study '{config.study}' has no section identification, which says where to look for"
+            f"study '{config.study}' has no section identification, which gives the bands for"
             " the equivalent support: add it; `vibroimpact reference` lists its keys"
         )
     from vibroimpact.identify.identify_case import identify_case

@@ -85,11 +85,11 @@ def summary_rows(rows: list[dict]) -> list[dict]:
     would be a chance selection.
     ratio: k_median over the median of the k_median of the three compared methods.
     verdict_k, verdict_c: of the compared methods, see verdict; empty in the rows of all others.
-    reason: why k or c is not resolved, or k is weak; empty if both are, or where the method
+    reason: why k or c is not resolved, or k is weak; empty if both are, or if the method
         never tells c.
-    flag: what makes the values of one or more seeds doubtful, and in how many, see identify.guards.
-    k_bound: N/m, that k is below where it does not differ from 0, the largest over seeds.
-    contact_fraction: median over seeds. caution: what else is to be known of the cases.
+    flag: the doubts about the values of one or more seeds, and in how many, see identify.guards.
+    k_bound: N/m, the upper bound of k if it does not differ from 0, the largest over seeds.
+    contact_fraction: median over seeds. caution: further remarks on the cases.
     """
     places = _by_place(rows)
     several = len({place[2:] for place in places}) > 1
@@ -174,7 +174,7 @@ def verdict(spans: Mapping[str, Span], quantity: str) -> str:
 
 
 def _distance(one: float, other: float) -> float:
-    """Return the difference of two values over the smaller; infinite where one is 0."""
+    """Return the difference of two values over the smaller; infinite if one is 0."""
     smaller = min(abs(one), abs(other))
     return abs(one - other) / smaller if smaller > 0.0 else np.inf
 
@@ -201,7 +201,7 @@ def _span(cases: list[dict], column: str) -> Span:
 
 
 def _bound(cases: list[dict], k: Span) -> float:
-    """Return what k is below in all seeds where it does not differ from 0 in most; else NaN."""
+    """Return the upper bound of k in all seeds if it does not differ from 0 in most; else NaN."""
     bounds = np.array([row["k_bound"] for row in cases], dtype=float)
     if np.isfinite(k[0]) or 2 * np.isfinite(bounds).sum() < len(bounds):
         return np.nan

@@ -43,10 +43,10 @@ STILL = 1.0e-9  # of the largest motion of a sensor: none
 
 @dataclass(frozen=True)
 class ModelChecks:
-    """What the checks of a model say, in sentences with key, value and remedy.
+    """The results of the checks of a model, in sentences with key, value and remedy.
 
     problems: why the study can not run.
-    warnings: what makes its numbers wrong as they stand.
+    warnings: causes that make its numbers wrong.
     """
 
     problems: tuple[str, ...] = ()
@@ -87,7 +87,7 @@ def check_model(config: Config) -> ModelChecks:
 
 
 def still_points(config: Config, structure: Any) -> Iterator[str]:
-    """Yield a sentence for each mass, and each force beside the first, at a point that is held."""
+    """Yield a sentence for each mass, and each force after the first, at a point that is held."""
     rows_of, force = point_rows_of(structure, config), config.excitation
     forces = {
         f"excitation.{key}[{index}]": entry
@@ -174,7 +174,7 @@ def extrapolated(config: Config, model: ModalModel) -> Iterator[str]:
 
 
 def short_record(config: Config) -> Iterator[str]:
-    """Yield that a record holds too few segments to identify from, and what would do."""
+    """Yield that a record holds too few segments to identify from, and the remedy."""
     record, spectra, rate = config.record, config.spectra, config.record.sampling_frequency_Hz
     if config.identification is None:
         return

@@ -1,4 +1,4 @@
-"""Whether results are of the configuration beside them: a run that was killed leaves older ones."""
+"""Whether results are of the configuration in their folder: a killed run leaves older ones."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SIMULATING = ("simulate", "simulate_to_spectra")  # the stages of which one make
 
 
 def other_configuration(path: Path, beside: Path) -> str:
-    """Return the sentence for a result of another configuration than that beside it."""
+    """Return the sentence for a result of another configuration than that of its folder."""
     return f"{path}: is of another configuration than {beside}, {_remedy(beside)}"
 
 

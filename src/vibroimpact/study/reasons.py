@@ -1,4 +1,4 @@
-"""Why a study has no stiffness or damping for a case, or what is to be known of it: one sentence in
+"""Why a study has no stiffness or damping for a case, or a remark on it: one sentence in
 a reader's words.
 """
 
@@ -41,10 +41,10 @@ def bound_text(bound: float, touching: float) -> str:
 def stiffness_reason(
     methods: Mapping[str, dict], spans: Mapping[str, Span], agreement: str, bound: float
 ) -> str:
-    """Return why there is no k, or what is to be known of it; empty if all methods agree.
+    """Return why there is no k, or a remark on it; empty if all methods agree.
 
     methods: {method: row of consistency_summary.csv}; spans: of the compared ones.
-    bound: N/m, what k is below; NaN if that is not known.
+    bound: N/m, the upper bound of k; NaN if that is not known.
     """
     if np.isfinite(bound):
         touching = next(iter(methods.values())).get("contact_fraction", np.nan)
@@ -53,7 +53,7 @@ def stiffness_reason(
 
 
 def damping_reason(methods: Mapping[str, dict], spans: Mapping[str, Span], agreement: str) -> str:
-    """Return why there is no c, or what is to be known of it; empty if both methods agree."""
+    """Return why there is no c, or a remark on it; empty if both methods agree."""
     return _reason("c", methods, spans, agreement)
 
 
@@ -99,11 +99,11 @@ def _silence(row: dict) -> str:
 def agreement_sentence(
     quantity: str, kinds: Sequence[str], cases: str, apart: float = AGREEMENT
 ) -> str:
-    """Return how often the methods agree on k or c, and what the other cases are.
+    """Return how often the methods agree on k or c, and the state of the other cases.
 
     kinds: of each case its verdict, or "bounded" for an upper bound of k.
     cases: such as "pairs of load and gap".
-    apart: largest relative distance of a method from the recommended value where they agree.
+    apart: largest relative distance of a method from the recommended value if they agree.
     """
     count = {kind: kinds.count(kind) for kind in dict.fromkeys(kinds)}
     every = sum(count.get(kind, 0) for kind in ("agree", "spread", "differ"))

@@ -1,4 +1,4 @@
-"""What a run leaves in its folder beside the results: its configuration and where it comes from."""
+"""The files of a run in addition to its results: its configuration and provenance."""
 
 from __future__ import annotations
 
@@ -43,10 +43,10 @@ def configuration_text(values: Mapping[str, Any], folder: Path) -> str:
 
 
 def run_provenance(values: Mapping[str, Any] | None, command: Sequence[str]) -> dict[str, Any]:
-    """Return what made the results of a run, as provenance.json holds it.
+    """Return the origin of the results of a run, as provenance.json holds it.
 
     It is of the last run that made anything in the folder. Each netCDF file states that of itself
-    in its attributes, which is older where the run did not have to make the file again.
+    in its attributes, which is older if the run did not have to make the file again.
     """
     return {
         "vibroimpact_version": __version__,

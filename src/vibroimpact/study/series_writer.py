@@ -29,8 +29,8 @@ def series_writer(config: Any, model: ModalModel, paths: dict, attributes: dict)
     """Return the `writer` of simulate_cases that writes the time series of each case.
 
     config: its key study is read.
-    paths: {case: path}; where it is empty the series are dropped.
-    attributes: of the files, beside those of the case.
+    paths: {case: path}; if it is empty the series are dropped.
+    attributes: of the files, in addition to those of the case.
     """
 
     @contextmanager
@@ -85,7 +85,7 @@ def write_record_parts(
 ) -> None:
     """Write the statistics of a record to one file and its time series to another.
 
-    series_path: needed only where the record holds time series itself, see every_step_records.
+    series_path: needed only if the record holds time series itself, see every_step_records.
     """
     statistics, series = split_record(record)
     write_record(statistics, path)

@@ -40,14 +40,14 @@ def simulate_cases(
 ) -> Iterator[tuple[Case, xr.Dataset]]:
     """Yield (case, record) for every case, integrating LANES of them at a time.
 
-    Where a support presses at rest, a run starts from static equilibrium; any other starts from
+    If a support presses at rest, a run starts from static equilibrium; any other starts from
     zero. The initial state of the configuration is added. A record does not depend on the other
     cases of the list. Its variables, dimensions and units
     are those of record_variables.VARIABLES.
 
     config: the stage's settings, with study, seed, record, excitation, integration and
     structure.section.
-    writer: where given, the records hold no time series. writer(schedule, batch) is a context
+    writer: if given, the records hold no time series. writer(schedule, batch) is a context
     manager, entered once per batch of cases; it yields put(first sample, {variable: (case, ...,
     sample)}), which receives the series piece by piece. See series_writer and spectra_writer.
     stopwatch: measures the CPU time of kernel, output filter and force.
@@ -109,7 +109,7 @@ def seed_force(config: Any, schedule: Schedule, seed: int) -> ForceStream:
 def seed_forces(config: Any, schedule: Schedule, seed: int, channels: int) -> list[ForceStream]:
     """Return the force of a seed in each channel at every step of the run, per newton of the load.
 
-    It has RMS 1 over the recorded window, or on average over seeds where the excitation says so.
+    It has RMS 1 over the recorded window, or on average over seeds if the excitation says so.
     All loads scale this force and all gaps share it. Scaling load and gap by a power of two
     therefore scales a record bit for bit.
     """
@@ -180,7 +180,7 @@ def time_series(
 def record_dataset(
     config: Any, model: ModalModel, schedule: Schedule, lanes: BatchResult, lane: int, case: Case
 ) -> xr.Dataset:
-    """Return the record of one lane of a batch, without time series where the lanes hold none."""
+    """Return the record of one lane of a batch, without time series if the lanes hold none."""
     series: dict[str, np.ndarray] = {}
     if lanes.displacement is not None:
         assert lanes.acceleration is not None and lanes.force is not None

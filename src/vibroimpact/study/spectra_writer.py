@@ -30,7 +30,7 @@ def spectra_writer(
 
     config: the sections that CaseSpectra reads.
     paths: {case: path}.
-    attributes: of the files, beside those of the case.
+    attributes: of the files, in addition to those of the case.
     stopwatch: measures the CPU time of the transforms as "spectra".
     """
 

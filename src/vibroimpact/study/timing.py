@@ -20,7 +20,7 @@ def job_of(benchmark: str, log: str) -> dict:
     benchmark: text of its benchmark file, with Snakemake's columns.
     log: text of its log.
 
-    CPU seconds are taken from the log where it has them. Those of the benchmark file are sampled
+    CPU seconds are taken from the log if it has them. Those of the benchmark file are sampled
     and miss the end of short jobs.
     """
     header, values = (line.split("\t") for line in benchmark.splitlines()[:2])

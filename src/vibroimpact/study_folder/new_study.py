@@ -19,13 +19,13 @@ CONFIGURATION = Path("config", "study.yaml")  # the file that the Snakefile read
 
 
 class NewStudyError(ValueError):
-    """A folder that can not be laid out. The message says why, and what to do."""
+    """A folder that can not be laid out. The message states the reason and the remedy."""
 
 
 def new_study(folder: Path | str, example: str = "study") -> list[Path]:
     """Return the files laid out in a folder for a study, by their paths below it, sorted.
 
-    folder: is made where it does not exist. Nothing that exists is overwritten.
+    folder: is made if it does not exist. Nothing that exists is overwritten.
     example: the configuration to start from, one of shared_files.configurations. Files that it
         names, such as matrices, are copied with it.
     Raises NewStudyError for a folder that is not empty, an example that does not exist, and a

@@ -1,4 +1,4 @@
-"""Where the workflow and its configurations lie: in the installed package, or in a checkout."""
+"""The place of the workflow and its configurations: in the installed package, or in a checkout."""
 
 from __future__ import annotations
 

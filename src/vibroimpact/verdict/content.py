@@ -1,6 +1,6 @@
 """verdict.json: which effects a model lacks, and the evidence for it; its one writer and reader.
 
-`verdict.schema.json` beside this file is the JSON schema of `Verdict` for readers in other
+`verdict.schema.json` in this folder is the JSON schema of `Verdict` for readers in other
 languages; tests/verdict/test_verdict.py compares it.
 """
 
@@ -81,7 +81,7 @@ class FoundEffect(_Content):
     """An effect that the model lacks."""
 
     id: str = Field(description="Id of the effect in the catalogue.")
-    location: str = Field(description="Where it acts: a named place, or all supports.")
+    location: str = Field(description="Its place: a named place, or all supports.")
     parameters: dict[str, Estimate] = Field(description="Estimates by parameter name.")
     family: str | None = Field(
         default=None, description="Family of effects that it belongs to, whatever its law."
@@ -99,9 +99,9 @@ class RankedCandidate(_Content):
         description="Gain on held-out records; null if the candidate was screened only."
     )
     closed_fraction: Number | None = Field(description="Share of the excess misfit it closes.")
-    location: str | None = Field(default=None, description="Where the effects act.")
+    location: str | None = Field(default=None, description="The places of the effects.")
     probability: Probability | None = Field(
-        default=None, description="Probability that these effects are what is missing."
+        default=None, description="Probability that these effects are the missing ones."
     )
 
 
@@ -145,14 +145,14 @@ class MisfitBySplit(_Content):
 
 
 class StageCost(_Content):
-    """What the jobs of one stage cost."""
+    """The cost of the jobs of one stage."""
 
     cpu_seconds: Number = Field(description="CPU time, s.")
     simulations: int = Field(description="Number of simulated records.")
 
 
 class Cost(_Content):
-    """What all jobs of a verdict cost, from the first check of the campaign to this file."""
+    """The cost of all jobs of a verdict, from the first check of the campaign to this file."""
 
     cpu_seconds: Number = Field(description="CPU time of all jobs, s.")
     simulations: int = Field(description="Number of records that all jobs simulated.")
@@ -162,7 +162,7 @@ class Cost(_Content):
 class Withdrawn(_Content):
     """Effects that were added and are not offered: they make records worse, or hardly better."""
 
-    effects: list[FoundEffect] = Field(description="What was added.")
+    effects: list[FoundEffect] = Field(description="The added effects.")
     misfit: MisfitBySplit = Field(description="Misfit without and with them.")
 
 
@@ -173,18 +173,18 @@ class CheckResult(_Content):
     level: Literal["pass", "warn", "refuse", "not checked"]
     record: str | None = Field(description="Name of the record it concerns.")
     channel: str | None = Field(description="Name of the channel it concerns.")
-    message: str = Field(description="The result, and the remedy where there is one.")
+    message: str = Field(description="The result, and the remedy if there is one.")
 
 
 class Verdict(_Content):
-    """What a campaign says about a model."""
+    """The verdict of a campaign on a model."""
 
     verdict: Conclusion = Field(description="The conclusion.")
     effects: list[FoundEffect] = Field(
-        description="What the model lacks; empty unless named or partly_explained."
+        description="The effects that the model lacks; empty unless named or partly_explained."
     )
     ambiguity_set: list[list[str]] = Field(
-        description="Sets of effect ids that explain the campaign equally well; filled where"
+        description="Sets of effect ids that explain the campaign equally well; filled if"
         " the verdict is named, ambiguous or partly_explained."
     )
     ranking: list[RankedCandidate] = Field(description="Candidates, best first.")
@@ -194,7 +194,7 @@ class Verdict(_Content):
     broken_invariances: list[str] = Field(
         description="Symmetries of the bare model that the measurement breaks."
     )
-    regions: list[Region] = Field(description="Where model and measurement differ most.")
+    regions: list[Region] = Field(description="The largest differences of model and measurement.")
     misfit: MisfitBySplit
     p_global_before: Number | None = Field(
         description="Probability of the observed differences by chance, with the model as given."
@@ -224,13 +224,14 @@ class Verdict(_Content):
         default=None, description="Probability that nothing is missing."
     )
     probability_something_else: Probability | None = Field(
-        default=None, description="Probability that what is missing is not in the catalogue."
+        default=None, description="Probability that a missing effect is not in the catalogue."
     )
     load_unit: Literal["N", "m/s²"] = Field(
-        default="N", description="Unit of the loads: m/s² where the base moved, N of forces."
+        default="N", description="Unit of the loads: m/s² if the base moved, N of forces."
     )
     withdrawn: Withdrawn | None = Field(
-        default=None, description="What was tried and made records worse, or hardly better."
+        default=None,
+        description="Effects that were tried and made records worse, or hardly better.",
     )
 
     @model_validator(mode="after")
@@ -239,14 +240,14 @@ class Verdict(_Content):
             raise ValueError(f"effects must be empty if the verdict is {self.verdict}")
         if bool(self.ambiguity_set) != (self.verdict in WITH_AMBIGUITY_SET):
             wanted = "filled" if self.verdict in WITH_AMBIGUITY_SET else "empty"
-            raise ValueError(f"ambiguity_set must be {wanted} where the verdict is {self.verdict}")
+            raise ValueError(f"ambiguity_set must be {wanted} if the verdict is {self.verdict}")
         if len(self.ambiguity_probability) not in (0, len(self.ambiguity_set)):
             raise ValueError("ambiguity_probability must have one number per set of ambiguity_set")
         return self
 
     def shown_effects(self) -> list[FoundEffect]:
         """Return the effects of the completed model: the named ones, or the most probable ones
-        where the verdict is ambiguous.
+        if the verdict is ambiguous.
         """
         return self.effects or (self.most_probable if self.verdict == "ambiguous" else [])
 

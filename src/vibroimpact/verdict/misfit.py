@@ -21,9 +21,9 @@ def closed_fraction(
     before: float, after: float, floor: float, floor_before: float | None = None
 ) -> float | None:
     """Return 1 - excess after / excess before of distances in dB; None if the excess before is
-    negligible: then the records tell nothing of what is added.
+    negligible: then the records hold no information on the addition.
 
-    floor, floor_before: dB, of the model after and before, the same where None.
+    floor, floor_before: dB, of the model after and before, the same if None.
     """
     given = floor if floor_before is None else floor_before
     first = excess(before, given)

@@ -1,4 +1,4 @@
-"""Checks of a campaign by its own records, without a model: what one record can not have become.
+"""Checks of a campaign by its own records, without a model: changes that no record can have.
 
 The gain of a channel is the response per force, line by line. From one level to the next contact
 bends the gains; it does not turn all of them round, move them by one factor at every line, or give
@@ -138,7 +138,7 @@ def _gains(measured: CampaignSignals, record: int) -> Gains | None:
 
 
 class _Pair:
-    """The gains of a record beside those of another at its lines that the other reaches."""
+    """The gains of a record against those of another at its lines that the other reaches."""
 
     def __init__(self, own: Gains, other: Gains) -> None:
         low, high = other.frequency[[0, -1]]

@@ -1,9 +1,9 @@
 """All checks of a campaign file: rows {check, level, record, channel, message}.
 
-level is "pass"; "warn", where a signal or record is left out or to be read with care; "refuse",
-where no verdict is possible; or "not checked", with the reason. record and channel are names, None
+level is "pass"; "warn", if a signal or record is left out or to be read with care; "refuse",
+if no verdict is possible; or "not checked", with the reason. record and channel are names, None
 if a row is about all of them.
-A file is refused only where what remains holds no measured force, no response, or no two levels.
+A file is refused only if the rest holds no measured force, no response, or no two levels.
 """
 
 from __future__ import annotations
@@ -111,7 +111,7 @@ def check_campaign(campaign: xr.Dataset) -> list[dict]:
     """Return the rows of all checks of a campaign Dataset, in the order of CHECKS.
 
     A check without complaint gives one row of level "pass". One that could not be made gives a row
-    "not checked" with the reason. Faults of single signals are looked for in what was recorded; all
+    "not checked" with the reason. Faults of single signals are sought in the recorded ones; all
     that follows looks at the motion relative to the base.
     """
     campaign = decode_texts(campaign)
@@ -158,7 +158,7 @@ def check_campaign(campaign: xr.Dataset) -> list[dict]:
 
 
 def _without_force(campaign: xr.Dataset) -> list[dict]:
-    """Return the rows of what can be checked of a campaign whose force was not measured."""
+    """Return the rows of the checks that need no measured force."""
     measured = campaign_signals(fill_missing(campaign))
     return [
         *unit_rows(measured),
@@ -362,7 +362,7 @@ def _linear(measured, spectra, record):
             measured.forces[0],
         )
     if len(measured.forces) > 1:
-        reason = "with several forces, each may drive what does not follow the first"
+        reason = "with several forces, each may drive motion that does not follow the first"
         yield _not_checked("swapped channels", reason)
     elif len(measured.channels) == 1:
         yield _not_checked("swapped channels", "there is one response")
@@ -398,7 +398,7 @@ def _between_records(measured):
     """Yield rows of records and channels that are copies, and of those that contradict others."""
     rows = [*copies(measured)]
     if len(measured.forces) > 1:
-        reason = "with several forces, each may drive what does not follow the first"
+        reason = "with several forces, each may drive motion that does not follow the first"
         yield _not_checked("between records", reason)
     elif len(measured.records) > 1:
         rows += contradictions(measured)
@@ -506,7 +506,7 @@ def _length(measured, spectra):
 
 
 def _content(measured, usable):
-    """Yield rows of what a verdict needs at least, after the other checks have excluded signals."""
+    """Yield rows of the least that a verdict needs, after the other checks excluded signals."""
     force, response = usable
     whole = force & response.any(axis=1)
     if not force.any() or measured.force_unit_faults.get(0):
@@ -521,7 +521,7 @@ def _content(measured, usable):
         yield check_row(
             "content",
             "refuse",
-            "No response is usable beside a usable force: a verdict needs one response.",
+            "No response is usable together with a usable force: a verdict needs one response.",
         )
         return
     loads = measured.load_rms[whole]

@@ -50,8 +50,8 @@ def channel_delays(
     The lags of the channels are relative to the others; the common lag is that of all channels
     behind the force. The lag tau of a channel maximises sum coherence * Re((h/|h|)² exp(2i omega
     tau)), which is 1 for real modes without noise; a velocity is first turned by a quarter period.
-    A lag is reported where it explains half of what is missing to 1, where its phase is large
-    enough to be seen, and where real modes fit no better without it.
+    A lag is reported if it explains half of the distance to 1, if its phase is large
+    enough to be seen, and if real modes fit no better without it.
     """
     unit = spectra.h1 / np.maximum(np.abs(spectra.h1), np.finfo(float).tiny)
     squared = unit**2 * np.where(np.array(kinds) == "velocity", -1.0, 1.0)[:, None]
@@ -122,7 +122,7 @@ def _not_delayed(
 
 
 def _explains(without: float, with_it: float) -> bool:
-    """Whether a lag raises the score by more than half of what is missing to 1."""
+    """Whether a lag raises the score by more than half of the distance to 1."""
     return with_it - without > 0.5 * (1.0 - with_it)
 
 
@@ -139,7 +139,7 @@ def alignment(signals: CampaignSignals) -> np.ndarray:
 def swap_hints(signals: CampaignSignals, spectra: Transfer) -> list[tuple[int, int | None]]:
     """Return pairs (channel along the force, channel across it or None) whose names seem swapped.
 
-    A channel along the force is suspect where it is incoherent although most others along the force
+    A channel along the force is suspect if it is incoherent although most others along the force
     are coherent; a contact force is not, which there is none of until the structure touches. Its
     partner is a coherent channel across the force, the one at the same point if there is one, of
     the same kind if there is one. Without a partner, one channel that follows tells of no other.

@@ -160,7 +160,7 @@ def compare_with_model(
 
 
 def _merge_gains(rows: list[dict]) -> list[dict]:
-    """Return the rows with "units" renamed "gains" where several channels are off.
+    """Return the rows with "units" renamed "gains" if several channels are off.
 
     Then the common cause is not the unit of a channel, and none is to be left out for it.
     """
@@ -196,7 +196,7 @@ def _swaps(misfit: np.ndarray, kinds: list[str]) -> Iterator[tuple[int, int]]:
 
 
 def _unit_hint(gain_dB: float) -> str:
-    """Return ", as between g and m s-2" where a gain is near the ratio of two units, else ""."""
+    """Return ", as between g and m s-2" if a gain is near the ratio of two units, else ""."""
     factor = 10.0 ** (abs(gain_dB) / 20.0)
     near = [
         text

@@ -37,8 +37,8 @@ def missing_samples(signal: np.ndarray) -> tuple[int, int] | None:
 def clipped_share(signal: np.ndarray) -> float | None:
     """Return the share of samples (0 to 1) at a flat top of a signal (time,), or None.
 
-    A top is flat where the extreme value occurs three times although the values next to it are
-    hardly repeated, or where far more samples lie within 1, 2 or 4 % of the extreme than in the
+    A top is flat if the extreme value occurs three times although the values next to it are
+    hardly repeated, or if far more samples lie within 1, 2 or 4 % of the extreme than in the
     next 1, 2 or 4 %. The signal has no missing samples.
     """
     flat, sides = 0, (signal - np.median(signal), np.median(signal) - signal)
@@ -152,7 +152,7 @@ def level_trend(
 
     signal (time,).
     rate: Hz.
-    band_Hz: lowest and highest frequency; the lowest is raised where a segment of four of its
+    band_Hz: lowest and highest frequency; the lowest is raised if a segment of four of its
     periods is too long for the record.
     starts_at_rest: the start-up is left out.
 

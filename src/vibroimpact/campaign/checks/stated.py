@@ -1,4 +1,4 @@
-"""Checks of what a campaign file states of itself: units, sizes, times, period, load, length.
+"""Checks of the statements of a campaign file: units, sizes, times, period, load, length.
 
 Each yields rows {check, level, record, channel, message}, see file_checks.
 """
@@ -35,7 +35,7 @@ def check_row(
 
 
 def assumed_rows(campaign: xr.Dataset) -> Rows:
-    """Yield rows of what was filled in, and of a filter that is not simulated."""
+    """Yield rows of the values that were filled in, and of a filter that is not simulated."""
     for sentence in filter(None, campaign.attrs.get("assumed", "").split("\n")):
         yield check_row("contract", "warn", sentence[0].upper() + sentence[1:] + ".")
     antialias = campaign.attrs.get("antialias", "")
@@ -152,8 +152,8 @@ def _offset_rows(measured: CampaignSignals, record: int) -> Rows:
                 "load_rms",
                 "warn",
                 f"{measured.forces[index]} reads a constant {offset:.4g} {unit} in record {name},"
-                f" beside an RMS of {rms:.4g} {unit} about it: loads are taken about the mean."
-                " Where it reads that at rest too, add remove_offset: true to it in campaign.yaml.",
+                f" and an RMS of {rms:.4g} {unit} about it: loads are taken about the mean."
+                " If it reads that at rest too, add remove_offset: true to it in campaign.yaml.",
                 name,
                 measured.forces[index],
             )
@@ -175,7 +175,7 @@ def short_rows(measured: CampaignSignals) -> Rows:
 
 
 def period_rows(measured: CampaignSignals) -> Rows:
-    """Yield a row where the force does not repeat with the stated period."""
+    """Yield a row if the force does not repeat with the stated period."""
     period = measured.stated_period
     for name, force in zip(measured.records, measured.force, strict=True):
         if not 0 < 2 * period <= force.shape[-1]:
@@ -188,7 +188,7 @@ def period_rows(measured: CampaignSignals) -> Rows:
                 "refuse",
                 f"period_samples = {period}, but {measured.forces[0]} differs by {share:.0%} from"
                 f" one period to the next in record {name}: write the samples of a period, or 0"
-                " where the force does not repeat.",
+                " if the force does not repeat.",
                 name,
             )
             return

@@ -132,7 +132,7 @@ def _padded(values, length):
 
 
 def _levels(sidecar, cuts, loads):
-    """Return the Level of each record; repeats are counted where the sidecar does not give them."""
+    """Return the Level of each record; repeats are counted if the sidecar does not give them."""
     levels, keys = [], []
     for record, cut, load in zip(sidecar.records, cuts, loads, strict=True):
         gap = record.gap_m if record.gap_m is not None else np.nan
@@ -177,7 +177,7 @@ def _row(sensor, signal, cut, rate):
 
 
 def _losses(signal, cut, finite):
-    """Yield what of a signal is missing in a record, or was left out of it."""
+    """Yield a sentence on the samples of a signal that are missing or left out in a record."""
     if finite < cut.length:
         yield f"{cut.length - finite} of {cut.length} samples are missing (nan)"
     late = cut.late(signal)

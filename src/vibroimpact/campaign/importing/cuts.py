@@ -114,7 +114,7 @@ def _apart(group: list[Signal], cut: Cut) -> Iterator[str]:
 
 
 def _outside(record: Record, place: str, duration: float, rate: float) -> Iterator[str]:
-    """Yield a sentence where from_s or to_s is beyond the end of the record."""
+    """Yield a sentence if from_s or to_s is beyond the end of the record."""
     for key, time in (("from_s", record.from_s), ("to_s", record.to_s)):
         if time is not None and time > duration + 0.5 / rate:
             yield (
@@ -140,7 +140,7 @@ def _short(cuts: list[Cut], measured: Measured) -> Iterator[str]:
 def _odd_values(sensor: ResolvedSensor, signal: Signal, cut: Cut) -> Iterator[str]:
     """Yield a sentence for the first value of a signal that no sensor measures.
 
-    NaN stands for a sample that is missing: the checks of the campaign say what is left out.
+    NaN stands for a sample that is missing: the checks of the campaign name it.
     """
     values, unit = cut.of(signal), sensor.channel.units
     first = cut.first + cut.late(signal)
@@ -151,7 +151,7 @@ def _odd_values(sensor: ResolvedSensor, signal: Signal, cut: Cut) -> Iterator[st
         yield (
             f"{signal.place(first + int(wrong[0]))}: {values[wrong[0]]:g} {unit}{more} in"
             f" record {cut.name} is no measured value: correct the file or its unit, or write nan"
-            " where a sample is missing"
+            " for a missing sample"
         )
     elif not np.isfinite(size).any() and sensor.role == "force":
         yield (

@@ -14,7 +14,7 @@ from .sidecar import DIRECTIONS, NAME
 
 UNKNOWN = "FILL_IN"
 HEAD = (
-    "# Complete every FILL_IN, or delete its key where there is none. Delete signals that are no"
+    "# Complete every FILL_IN, or delete its key if there is none. Delete signals that are no"
     " sensors, and list forces under 'forces'."
 )
 
@@ -22,9 +22,9 @@ HEAD = (
 def checked_folder(folder: str | Path, draft: str | Path) -> list[Path]:
     """Return the files that the import of a folder reads, after an import that wrote nothing.
 
-    draft: path of the draft of campaign.yaml, which is written where the folder has none.
+    draft: path of the draft of campaign.yaml, which is written if the folder has none.
 
-    Raises ImportProblem with every problem, and where the draft is.
+    Raises ImportProblem with every problem, and the path of the draft.
     """
     files = raw_files(folder)
     described = files[0].name == NAME

@@ -37,7 +37,7 @@ def read_frfs(path: str | Path) -> FrequencyResponses:
 
     Of a hammer that roved while one accelerometer stayed, response and force change places: a
     linear structure responds alike (J. C. Maxwell 1864). Raises ImportProblem for a file without
-    frequency responses of one force or one response, and for one that does not say where they are.
+    frequency responses of one force or one response, and for one without their places.
     """
     types, sets = read_datasets(path)
     units = next((data for index, data in sets.items() if types[index] == 164), None)

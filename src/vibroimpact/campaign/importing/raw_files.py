@@ -29,9 +29,9 @@ READERS = {
 
 
 def raw_files(folder: str | Path) -> list[Path]:
-    """Return the files that the import of a folder reads, campaign.yaml first where there is one.
+    """Return the files that the import of a folder reads, campaign.yaml first if there is one.
 
-    Raises ImportProblem for a folder or a campaign.yaml that can not be read, where there is no
+    Raises ImportProblem for a folder or a campaign.yaml that can not be read, if there is no
     measurement, and for a file that is a link out of the folder.
     """
     folder = Path(folder)

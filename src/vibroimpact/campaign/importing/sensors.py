@@ -24,7 +24,7 @@ class ResolvedSensor:
     """A sensor whose place, direction, kind and unit are known.
 
     channel: Channel.
-    unit_from: where its unit stands.
+    unit_from: the place of its unit.
     signals: its Signal in each record.
     role: "force" or "response".
     """
@@ -47,7 +47,7 @@ def unit_kind(role: str, kind: str) -> str:
 
 @dataclass(frozen=True)
 class Measured:
-    """What was described and what was found; problems gathers the sentences of all that is wrong.
+    """The sensors as described and as found; problems gathers the sentences on all faults.
 
     folder: of the measurements.
     sidecar: Sidecar.
@@ -89,7 +89,7 @@ def _resolved(sensor: Sensor, role: str, measured: Measured) -> ResolvedSensor |
         )
     if role == "force" and kind == "acceleration":
         problems.append(
-            f"{place}: an acceleration is no force: add kind: {BASE} where all that holds the"
+            f"{place}: an acceleration is no force: add kind: {BASE} if all that holds the"
             " structure moves, else list it among channels"
         )
         return None
@@ -115,7 +115,7 @@ def _resolved(sensor: Sensor, role: str, measured: Measured) -> ResolvedSensor |
 
 
 def _kind(sensor: Sensor, signal: Signal, role: str) -> str:
-    """Return the kind of a sensor, that of its signal where none is stated, or ""."""
+    """Return the kind of a sensor, that of its signal if none is stated, or ""."""
     kind = sensor.kind or signal.kind
     return FORCE if role == "force" and kind not in (BASE, "acceleration") else kind
 
@@ -225,7 +225,7 @@ def _shared_signals(sensors: list[ResolvedSensor]) -> Iterable[str]:
 def one_rate(sensors: list[ResolvedSensor], measured: Measured) -> float:
     """Return the sampling frequency in Hz of all signals: the one given, or of the longest signal.
 
-    Rates are one to six digits, or as far as rounded times can say. Adds to problems where there is
+    Rates are one to six digits, or as far as rounded times can say. Adds to problems if there is
     none or more than one.
     """
     signals = [signal for sensor in sensors for signal in sensor.signals]

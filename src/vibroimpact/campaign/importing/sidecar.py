@@ -1,6 +1,6 @@
 """The sidecar campaign.yaml: which signals are the channels and records of a campaign.
 
-It also gives what the files do not state.
+It also states the values that the files lack.
 """
 
 from __future__ import annotations
@@ -77,9 +77,9 @@ class Sensor(Section):
     """A response channel.
 
     name: of the channel.
-    variable: name of the signal in the files; the same where it is not given.
+    variable: name of the signal in the files; the same if it is not given.
 
-    Other keys give what the files do not state.
+    Other keys state values that the files lack.
     """
 
     name: Label
@@ -103,7 +103,7 @@ class Drive(Sensor):
 class Record(Section):
     """A record: its files and the conditions of the measurement.
 
-    variables: {sensor: signal} where the names of signals differ between records.
+    variables: {sensor: signal} if the names of signals differ between records.
     from_s, to_s: part of the record that is used.
     """
 
@@ -149,7 +149,7 @@ class Sidecar(Section):
 def read_sidecar(path: str | Path) -> Sidecar:
     """Return the Sidecar of a YAML file.
 
-    Raises ImportProblem with every problem, its place and what is expected.
+    Raises ImportProblem with every problem, its place and the expected value.
     """
     try:
         data = read_yaml(path)
@@ -170,7 +170,7 @@ def read_sidecar(path: str | Path) -> Sidecar:
 
 
 def _without(data: dict[str, Any], errors: Sequence[Mapping[str, Any]]) -> Sidecar | None:
-    """Return the Sidecar without the keys that are wrong, to find what else is; None if more is
+    """Return the Sidecar without the keys that are wrong, to find further problems; None if more is
     wrong than keys that may be left out.
     """
     rest = copy.deepcopy(data)

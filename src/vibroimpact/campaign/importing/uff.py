@@ -39,7 +39,7 @@ AGAIN = "export it again"
 def read_uff(path: str | Path) -> list[Signal]:
     """Return the Signals of the time records of a file.
 
-    A signal is named node:axis, as 12:+y; where a node has several, as a drive point has, with its
+    A signal is named node:axis, as 12:+y; if a node has several, as a drive point has, with its
     quantity: "12:+y force". Its aliases are node:axis, the entity's name and the first
     identification line. Raises ImportProblem when the file can not be read or has no time record.
     """
@@ -93,7 +93,7 @@ def _with_own_names(signals):
 def read_datasets(path: str | Path) -> tuple[list[int], dict[int, dict]]:
     """Return (number of each dataset, {index: content} of those that are read).
 
-    Raises ImportProblem for a file that is damaged: pyuff leaves out what it can not name.
+    Raises ImportProblem for a file that is damaged: pyuff leaves out datasets that it can not name.
     """
     import pyuff  # imported here: other files do not need it
 
@@ -225,7 +225,7 @@ def _text(value):
 
 
 def unit_of(data: dict, type_: int, units: dict | None) -> tuple[str, str]:
-    """Return (unit as UDUNITS text, where it is stated); "" if the file does not state it.
+    """Return (unit as UDUNITS text, its place in the file); "" if the file does not state it.
 
     It is the axis label, else dataset 164 with the type of the ordinate.
     """

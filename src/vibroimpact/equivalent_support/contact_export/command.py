@@ -22,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs=2,
         required=True,
         metavar=("FORMAT", "FILE"),
-        help=f"what to write, and where to; FORMAT: {', '.join(FORMATS)}",
+        help=f"format and path of the file; FORMAT: {', '.join(FORMATS)}",
     )
     parser.add_argument(
         "--unit", choices=("m", "mm"), default="m", help="m, N, kg, s (default) or mm, N, t, s"

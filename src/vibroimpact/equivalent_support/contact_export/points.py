@@ -66,7 +66,7 @@ class ContactPoint:
 class ContactSet:
     """The contact of all supports. notes: sentences for the head of a file.
 
-    left_out: sentences for what a format does not have.
+    left_out: sentences on the terms that a format does not have.
     """
 
     points: tuple[ContactPoint, ...]

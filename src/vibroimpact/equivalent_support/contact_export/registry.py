@@ -22,10 +22,10 @@ FIRST_NUMBER = 900001  # above the numbers of most models
 def contacts_text(
     contacts: ContactSet, form: str, unit: str = "m", first_number: int = FIRST_NUMBER
 ) -> tuple[str, tuple[str, ...]]:
-    """Return (text of a file with the contacts, sentences on what is left out of it).
+    """Return (text of a file with the contacts, sentences on its omissions).
 
     form: one of FORMATS. unit: "m" for m, N, kg, s or "mm" for mm, N, t, s.
-    first_number: first number or tag of nodes and elements, where the format has them.
+    first_number: first number or tag of nodes and elements, if the format has them.
 
     Raises EquivalentError for another format or unit, and for holes that the format has not.
     """

@@ -47,7 +47,7 @@ def text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
 
 
 def _terms(spring: PointSpring, unit: UnitSystem, name: str) -> list[str]:
-    """Return the _F terms of one point: the stiffness, and the damping where there is one."""
+    """Return the _F terms of one point: the stiffness, and the damping if there is one."""
     axes, frame = global_axes(spring.axes), "GLOBAL"
     if axes is None:
         axes, frame = (0, 1), "LOCAL"

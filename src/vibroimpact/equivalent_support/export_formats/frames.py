@@ -22,7 +22,7 @@ def head(
 ) -> list[str]:
     """Return the comment lines that begin a file.
 
-    mark: what begins a comment. extra: a sentence on how to use the file. title: of the content.
+    mark: the start of a comment. extra: a sentence on how to use the file. title: of the content.
     """
     sentences = [
         *(f"WARNING: {sentence}." for sentence in content.warnings),

@@ -1,4 +1,4 @@
-"""Nastran bulk data: GRID, CBUSH and PBUSH, and CORD2R where directions are not global axes.
+"""Nastran bulk data: GRID, CBUSH and PBUSH, and CORD2R if directions are not global axes.
 
 Every card is in the large field format (16 characters a field), so that a number keeps ten digits.
 Source: MSC Nastran Quick Reference Guide, entries CBUSH, PBUSH, CORD2R, GRID. CBUSH with a blank GB

@@ -27,7 +27,7 @@ def springs_text(
     """Return the text of a file with springs and dampers to ground.
 
     form: one of FORMATS. unit: "m" for m, N, kg, s or "mm" for mm, N, t, s.
-    first_number: first number or tag of nodes and elements, where the format has them.
+    first_number: first number or tag of nodes and elements, if the format has them.
 
     Raises EquivalentError for another format or unit, and if two supports have the same name but
     for letters that a format does not know.

@@ -62,7 +62,7 @@ def csv_text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
 
 
 def json_text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
-    """Return the JSON text: units, notes, what was left out, and the rows."""
+    """Return the JSON text: units, notes, the omissions, and the rows."""
     content = {
         "units": unit.name,
         "warnings": springs.warnings,

@@ -11,7 +11,7 @@ from ..answer import EquivalentError
 class UnitSystem:
     """A consistent system of units.
 
-    name: what a comment says. length: of 1 m. stiffness, damping: of 1 N/m and 1 N s/m.
+    name: in a comment. length: of 1 m. stiffness, damping: of 1 N/m and 1 N s/m.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""A sensor that is left free: what the others, held to their measurement, make of it."""
+"""A sensor that is left free: its prediction by the others, held to their measurement."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ COLUMNS = {"m/s": "velocity_m_per_s", "1/s": "strain_rate_1_per_s"}
 
 CAPTION = (
     "Each sensor in turn is left free while all others are held to their measurement; the model"
-    " then says what it should have measured. Above: the sensor whose prediction gains most, where"
+    " then predicts its signal. Above: the sensor whose prediction gains most, where"
     " its response is largest. Below: RMS error over RMS response of every sensor that moves there,"
     " as velocities.{left_out} A sensor far beyond the others may be at fault."
 )

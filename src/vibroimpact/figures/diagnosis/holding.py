@@ -1,4 +1,4 @@
-"""Where the holding force acts: by sensor, band and level, for both states of the model."""
+"""The holding force by place: by sensor, band and level, for both states of the model."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ MOST_LEVELS, MOST_CHANNELS = 3, 12
 RANGE = 50.0  # between the largest colour and the least
 
 CAPTION = (
-    "RMS of the force that holds each sensor of the model to what was measured, by band. Where"
-    " model and structure agree it is what noise and small errors of the model make; where it"
+    "RMS of the force that holds each sensor of the model to its measurement, by band. If"
+    " model and structure agree, it is that of noise and small errors of the model; if it"
     " stands out with the completed model, something is left. A column of panels is one record and"
     " has one scale of colours. The title has the mean over records that took no part.{left_out}"
 )
@@ -51,7 +51,7 @@ def holding_figure(evidence: xr.Dataset) -> Plot:
 
 def chosen_levels(evidence: xr.Dataset) -> list[int]:
     """Return up to MOST_LEVELS stretches of different records: the lowest and the highest load, and
-    one between that took no part, where there is one.
+    one between that took no part, if there is one.
     """
     load, part = evidence["load"].values, evidence["part"].values
     order = sorted(range(len(load)), key=lambda row: (load[row], part[row] != "apart"))

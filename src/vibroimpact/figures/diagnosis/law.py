@@ -1,4 +1,4 @@
-"""The law that records demand at supports and local elements, beside the model's."""
+"""The law that records demand at supports and local elements, against the model's."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where on the structure the named effects act: the structure with its supports, forces and
+"""The places of the named effects: the structure with its supports, forces and
 channels, and the places marked.
 """
 
@@ -120,8 +120,10 @@ def place_figure(config, data, effects):
     if config is not None and config.structure.kind not in TUBES:
         caption += ", and the named points of the model (small grey dots)"
     if effects:
-        caption += ", in orange where the effect acts. What acts everywhere marks all of it"
-    title = "Where it acts" if effects else "The structure as it was measured"
+        caption += (
+            ", in orange the place of the effect. An effect that acts everywhere marks all of it"
+        )
+    title = "Place of the effect" if effects else "The structure as it was measured"
     places = None if data is None or "channel_point" not in data else places_of(config, data)
     size = 0.0 if places is None else np.ptp(places.known(), axis=0).max()
     if places is None or size == 0.0:

@@ -14,9 +14,9 @@ MOST_BARS = 14
 NONE_KNOWN = "no probabilities are known that the verdict stands by"
 
 CAPTION = (
-    "Probability of each explanation among all that are shown, given the records and what was held"
-    " probable before; the places of one effect together. Orange: what is named, or all that is not"
-    " told apart. Grey: nothing is missing, and something {rest}.{left_out}"
+    "Probability of each explanation among all that are shown, given the records and the prior"
+    " probabilities; the places of one effect together. Orange: the named one, or all that are not"
+    " distinguished. Grey: nothing is missing, and something {rest}.{left_out}"
 )
 
 

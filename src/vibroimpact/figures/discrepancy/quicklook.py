@@ -91,7 +91,7 @@ def quicklook(campaign):
 
 
 def _drive(measured):
-    """Return the kind of the first force channel; that of a force where none was measured."""
+    """Return the kind of the first force channel; that of a force if none was measured."""
     return (*measured.force_kinds, FORCE)[0]
 
 
@@ -110,14 +110,14 @@ def _caption(campaign, measured, panels, left_out):
     return (
         f"Campaign: {source}. PSD of each force and response in SI units, Hann windows, mean power"
         f" in bins of 1/{BINS_PER_OCTAVE} octave, one curve per record, light for high loads;"
-        " dashed: held out. The shaded band is what the force excites, or what the file states."
+        " dashed: held out. The shaded band is that of the force, or that stated by the file."
         " Last panel: RMS of each response about its mean over that at the lowest level; a linear"
         f" structure follows the grey line.{hidden}"
     )
 
 
 def _shown_unit(units, kind):
-    """Return the SI unit of a channel, or its stored unit where that can not be converted."""
+    """Return the SI unit of a channel, or its stored unit if that can not be converted."""
     try:
         return si_unit(units, kind)
     except UnitError:

@@ -19,7 +19,7 @@ from .page_plot import PagePlot, key_of, unit_of
 
 UNITS = {"k": "N/m", "c": "N s/m"}
 WORDS = {"k": "stiffness", "c": "damping"}
-BOUNDS = {"k": " Grey triangles: upper bounds of k where the tube hardly touches.", "c": ""}
+BOUNDS = {"k": " Grey triangles: upper bounds of k, at which the tube hardly touches.", "c": ""}
 CONTROLS = ("gap", "place")
 # Kind of a cell: (sign, colour, in words), in the order of the colour scale.
 CELLS = {
@@ -74,7 +74,7 @@ def _against_load(quantity, answers, summary, loads):
         (
             f"Black with its band: the recommended {quantity}, median of the compared methods, and"
             f" its range over seeds; markers: each method with its own range.{BOUNDS[quantity]}"
-            " Where there is no black line no value is recommended; the table below says why."
+            " If there is no black line no value is recommended; the table below says why."
         ),
         frames,
         CONTROLS,

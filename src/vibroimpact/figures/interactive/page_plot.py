@@ -57,7 +57,7 @@ class PagePlot:
     """One plot of the page: a panel for each position of its controls.
 
     name: of its element.
-    title, caption: what it shows, in words.
+    title, caption: its content in words.
     frames: {indices of the controls, such as "0,3": Panel}.
     controls: names of the controls that choose the frame, in the order of the indices.
     empty: sentence for a position without a panel.
@@ -120,7 +120,7 @@ def unit_of(title: str) -> str:
 
 
 def numbers(values: ArrayLike) -> list[float | None]:
-    """Return values as a list with DIGITS significant digits, None for what is not finite."""
+    """Return values as a list with DIGITS significant digits, None if not finite."""
     return [
         float(f"{value:.{DIGITS}g}") if np.isfinite(value) else None
         for value in np.ravel(np.asarray(values, dtype=float))

@@ -33,7 +33,7 @@ def stabilisation_plot(
         "Stabilisation chart of the LSCF pole",
         (
             f"Poles by model order over the spectrum of {sensor} (grey, right), first record of the"
-            " level. The circles are the pole that was taken. Trust it where a column of stable"
+            " level. The circles are the pole that was taken. Trust it if a column of stable"
             " poles stands at the peak."
         ),
         {

@@ -29,7 +29,7 @@ AGAINST_LOAD = {
     "impact_rate": (
         Axis("impact_rate_per_s", True),
         "Impacts per second",
-        "Contacts begun per second at each support, against load. The rate levels off where the"
+        "Contacts begun per second at each support, against load. The rate levels off once the"
         " tube touches in every cycle of its motion.",
     ),
     "force": (
@@ -160,7 +160,7 @@ def _stress_by_section(statistics, places):
         "Bending stress by section",
         (
             "RMS and largest bending stress of each section at the chosen gap and load, median over"
-            " seeds. The highest bar is where the tube is stressed most."
+            " seeds. The highest bar is the most stressed section."
         ),
         frames,
         ("gap", "load"),
@@ -195,7 +195,7 @@ def energy_plot(
         (
             "Energy that the simulation fails to account for, over the work of the drive: the worst"
             " seed of every load and gap. Markers below the dashed line of their colour are within"
-            f" what the time step allows. Less than {LEAST_RESIDUAL:g}, as where nothing touches,"
+            f" the error of the time step. Less than {LEAST_RESIDUAL:g}, as without contact,"
             " is left out."
         ),
         {"": Panel(*axes, residual_items(found, limits))},

@@ -31,10 +31,10 @@ MOST_FRAMES = 144  # spectra on the page, gaps times loads: 20 kB each
 
 
 class StudyFiles(NamedTuple):
-    """What the plots are made of; spectra and curves are empty without an identification.
+    """The data of the plots; spectra and curves are empty without an identification.
 
     model: ModalModel.
-    series: paths of the time series, which are used where there are no spectra.
+    series: paths of the time series, which are used if there are no spectra.
     spectra, curves: paths of the spectra and of the estimates, named after their cases.
     summary: rows of consistency_summary.csv.
     read: function (path, names) as records.read_record.
@@ -55,7 +55,7 @@ def direction_of(config: Any) -> str:
 
 
 def shown_loads(gaps: Sequence[float], loads: Sequence[float]) -> list[float]:
-    """Return the loads of the slider: all of them, or a selection where there are many."""
+    """Return the loads of the slider: all of them, or a selection if there are many."""
     return spread_evenly(loads, max(2, MOST_FRAMES // max(len(gaps), 1)))
 
 

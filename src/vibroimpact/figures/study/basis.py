@@ -48,7 +48,7 @@ def basis_quality(config, rows):
             items += _errors(rows, pattern.format(family), **look)
         axes = Axis("support_stiffness_N_per_m", True), Axis("relative_error", True)
         panels[panel] = Panel(*axes, items, title)
-    title = "Reduced model: what each family of vectors brings"
+    title = "Reduced model: contribution of each family of vectors"
     return [Plot("basis_quality", title, caption, panels, size=(9.6, 4.2), share="y", legend=4)]
 
 

@@ -75,7 +75,7 @@ def transition_load(rows):
     """Return the load in N RMS at which the main peak is widest.
 
     It has the largest median damping ratio of the LSCF pole among table rows; the largest load
-    where no pole was found.
+    if no pole was found.
     """
     load, ratio = medians(
         [row for row in rows if row["method"] == "lscf"], "load_rms_N", "damping_ratio"

@@ -100,10 +100,10 @@ def energy_balance(config, records):
     caption = (
         "Left: energy balance of every case against load, relative to the work of the drive: with"
         f" the work of the contact forces ({work}), with the potential energy of the contacts in"
-        " its place (it measures the time step: what is lost at each crossing of the gap), and the"
+        " its place (it measures the time step: the loss at each crossing of the gap), and the"
         " bound of the error left in the implicit contact forces; dashed: accepted at"
-        f" {config.integration.steps_per_second:g} steps per second. What is below {FLOOR:g}, as"
-        " the zeros where nothing touches, is drawn there. Right: energies during the case of the"
+        f" {config.integration.steps_per_second:g} steps per second. Values below {FLOOR:g}, as"
+        " the zeros without contact, are drawn there. Right: energies during the case of the"
         f" largest load ({case.load_rms_N:g} N, gap"
         f" {gap_label(case.gap_m, outer_width(config.structure.section))}, seed {case.seed});"
         " negative times are the start-up before the record."

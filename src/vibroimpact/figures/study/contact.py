@@ -50,7 +50,7 @@ def figure_03_contact_law(config, structure):
     caption = (
         f"Contact law of support '{support.name}'. Left: the layer of stiffness over the height of"
         f" the support (total {stiffness:.3g} N/m) and the contact points that stand for it; each"
-        " point carries the stiffness written beside it. Right: contact force against displacement"
+        " point carries the stiffness written next to it. Right: contact force against displacement"
         f" of the tube {WAYS[support.profile.kind]}, all points together, gap"
         f" {gap_label(gap, outer_width(config.structure.section))}. The slope past the gap is"
         " the tangent stiffness; force over displacement is the secant stiffness, which rises with"
@@ -145,7 +145,7 @@ def figure_04_first_frequency(config):
         "First frequency of the driven plane against a bilateral stiffness k per support, shared"
         " by 1, 2, 3, 5 or 9 contact points over its height. Dotted: the frequencies of the free"
         " tube, of the tube pinned at the middle of each support and of the tube held over its"
-        f" whole height. Shaded: the stiffness ranges where 9 points are within {NEAR:.0%} of the"
+        f" whole height. Shaded: the stiffness ranges with 9 points within {NEAR:.0%} of the"
         " step to the neighbouring limit. One point can pin the tube but never clamp it; five"
         " follow the layer over the whole range."
     )

@@ -42,10 +42,10 @@ def look_of(method: str) -> dict[str, Any]:
 def figure_13_equivalent_support(config, model, rows, level="load_rms_N", study=None, caption=""):
     """Return the Plot of k and c against load, a colour and marker per method.
 
-    There is a column per gap, and per group of supports and direction where there are several.
+    There is a column per gap, and per group of supports and direction if there are several.
 
     rows: the consistency table, list of {column: value}.
-    level: column of the loads; response_rms_m where they are the RMS of the response.
+    level: column of the loads; response_rms_m if they are the RMS of the response.
     study: {gap in m: rows of a study} whose curve is drawn behind measured points; None for none.
     caption: in the place of that of a study.
     """
@@ -54,7 +54,7 @@ def figure_13_equivalent_support(config, model, rows, level="load_rms_N", study=
     caption = caption or (
         f"Equivalent bilateral support by each method against load, {columns}: stiffness k"
         " (top) and damping c on top of the modal damping (bottom), per support; median over seeds,"
-        " bars from the smallest to the largest seed. What a method does not resolve is left out:"
+        " bars from the smallest to the largest seed. Unresolved values are left out:"
         " near the free tube none sees k. The shape carries no damping. Lines without bars:"
         " statistical linearisation (from the load alone) and the mean secant stiffness of the"
         " simulated contact forces. Dashed: the contact stiffness, the upper limit."
@@ -187,7 +187,7 @@ def _places(rows):
 
 
 def _of(rows, gap, place):
-    """Return the rows of a place at a gap, at all gaps where it is None."""
+    """Return the rows of a place at a gap, at all gaps if it is None."""
     return [row for row in rows if _place(row) == place and gap in (None, row["gap_m"])]
 
 
@@ -198,7 +198,7 @@ def collapse(config, model, rows):
     """
     caption = (
         "Equivalent support against load divided by gap, all gaps: stiffness k (left) and damping"
-        " c (right) per support. The tube with impacts is homogeneous: what it does, measured in"
+        " c (right) per support. The tube with impacts is homogeneous: its motion, measured in"
         " gaps, depends on load/gap only, so that the points of all gaps must fall on one curve."
         " Markers: median over seeds and over the methods"
         f" {', '.join(METHODS[method][0] for method in COMPARED)} (the shape gives no c), bars from"

@@ -82,7 +82,7 @@ def _caption(beside):
     return (
         "Equivalent bilateral support of the measured tube by each method against load: stiffness k"
         " (top) and damping c on top of the modal damping (bottom), per support; median over"
-        " records, bars from the smallest to the largest record. What a method does not resolve is"
+        " records, bars from the smallest to the largest record. Unresolved values are"
         f" left out. The shape carries no damping.{over} Dashed: the contact stiffness of the"
         " model, the upper limit."
     )
@@ -90,7 +90,7 @@ def _caption(beside):
 
 def _supports(found, gap):
     """Return {load: (k, c, relative PSD (low_frequency,) of the force or None)} of the recommended
-    values at a gap, where one pair serves all.
+    values at a gap, if one pair serves all.
     """
     places = {(row["group"], row["direction"]) for row in found.rows}
     if len(places) > 1:
@@ -110,7 +110,7 @@ def _supports(found, gap):
 def _study_rows(found, beside):
     """Return {gap of the campaign: rows of the study's nearest gap, at the same load over gap}.
 
-    Where a model has effects with a scale of their own, only the same gap is comparable.
+    If a model has effects with a scale of their own, only the same gap is comparable.
     """
     if beside is None or found.levels != "load_rms_N":
         return None

@@ -148,12 +148,12 @@ def _modes(model, band) -> list[Item]:
 
 def figure_05_measured(config, model, measured, supports, simulated=None, level="load_rms_N"):
     """Return the Plot of measured spectra over those of the equivalent linear tube, and of a
-    study's simulation where there is one, a panel per load.
+    study's simulation if there is one, a panel per load.
 
     measured, simulated: Responses, the latter of a study of the same tube.
     supports: {load: (k in N/m, c in N s/m, relative PSD (low_frequency,) of the force or None)} of
         the loads at which they are known.
-    level: column of the loads; response_rms_m where they are the RMS of the response.
+    level: column of the loads; response_rms_m if they are the RMS of the response.
     """
     sensor = driven_sensor(config, config.identification.response_point)
     chosen = np.unique(

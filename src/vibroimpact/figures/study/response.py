@@ -27,7 +27,7 @@ def figure_06_levels(config, model, responses, level="load_rms_N"):
 
     They are the response point and the broadband point.
 
-    level: column of the loads; response_rms_m where they are the RMS of the response.
+    level: column of the loads; response_rms_m if they are the RMS of the response.
     """
     word, column = {
         "load_rms_N": ("load", "psd_dB"),
@@ -38,7 +38,7 @@ def figure_06_levels(config, model, responses, level="load_rms_N"):
     )
     caption = (
         f"PSD of displacement divided by the square of the {word}, over frequency and {word},"
-        f" {_gap_words(config, responses)}, mean over segments and seeds. Where the tube is linear"
+        f" {_gap_words(config, responses)}, mean over segments and seeds. If the tube is linear,"
         f" a column has one colour; peaks that move to the right with the {word} show the"
         " stiffening by contact. Triangles: modes of the driven plane of the free tube (bottom) and"
         " in full bilateral contact (top)."
@@ -176,7 +176,7 @@ def figure_08_load_and_stiffness(config, model, responses):
         ),
     }
     title, bar = (
-        "Load with contact beside stiffness without",
+        "Load with contact, stiffness without",
         ColourBar("psd_dB", *ends, ends="both"),
     )
     return [

@@ -133,7 +133,7 @@ def _shapes(model, found, loads):
 
 
 def _likeness(found, loads):
-    """Return the Panel of the MAC against the stiffness; a note where supports differ."""
+    """Return the Panel of the MAC against the stiffness; a note if supports differ."""
     lowest, items = min((case.seed for case in found), default=0), []
     colours = ordered_colours(loads or [1.0])
     for case, dataset in found.items():
@@ -161,7 +161,7 @@ def figure_11_singular_values(config, curves):
         " divided by the first, gap"
         f" {gap_label(next(iter(curves)).gap_m, outer_width(config.structure.section))}: median"
         " and range over seeds. One value alone means that the whole band moves in one shape, as a"
-        " linear tube does near a resonance; where others rise, in the transition, no single shape"
+        " linear tube does near a resonance; if others rise, in the transition, no single shape"
         " describes the motion."
     )
     items = []
@@ -188,5 +188,5 @@ def figure_11_singular_values(config, curves):
         "singular values relative to the first",
         "no shape found",
     )
-    title = "Size of the other shapes beside the first"
+    title = "Size of the other shapes over the first"
     return [Plot("figure_11_singular_values", title, caption, {"main": panel}, legend=5)]

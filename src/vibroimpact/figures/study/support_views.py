@@ -29,7 +29,7 @@ def distinct_holes(config: Any) -> list[tuple[list[str], Any]]:
 
 
 def drawn_scale(config: Any, gap: float) -> float:
-    """Return the factor by which gaps are drawn too large: 10, or less where that would hide the
+    """Return the factor by which gaps are drawn too large: 10, or less if that would hide the
     tube.
     """
     radius = 0.5 * outer_width(config.structure.section)
@@ -45,7 +45,7 @@ def drawn_scale(config: Any, gap: float) -> float:
 
 
 def titled(names: list[str]) -> str:
-    """Return the names of supports as a title, cut where it would be too long."""
+    """Return the names of supports as a title, cut if it would be too long."""
     text = ", ".join(names)
     if len(text) <= LONGEST_TITLE:
         return text

@@ -1,4 +1,4 @@
-"""Where the time of a study went: CPU time by rule and part."""
+"""The time of a study: CPU time by rule and part."""
 
 from __future__ import annotations
 
@@ -53,4 +53,4 @@ def timing(config, rows):
     )
     panel = Panel(*axes, items, legend="lower right")
     size = (7.6, 1.4 + 0.34 * len(rules))
-    return [Plot("timing", "Where the time goes", caption, {"main": panel}, size=size)]
+    return [Plot("timing", "CPU time by rule", caption, {"main": panel}, size=size)]

@@ -50,7 +50,7 @@ def view_axes(positions):
 
 
 def towards_reader(view):
-    """Return 1 if the depth axis of a view points towards the reader, -1 where away.
+    """Return 1 if the depth axis of a view points towards the reader, -1 if away.
 
     The global axes are right-handed: with x to the right and z up, y points away.
     """
@@ -78,7 +78,7 @@ def figure_01_layout(config, structure):
         " the drive; arrows are directions in the plane, a circle with a dot is a direction out of"
         " the plane, towards the reader, with a cross away from the reader. Right: a support from"
         " the side, and in section with the profile of its hole; the tube can move by the gap,"
-        f" {gap_label(gap, outer_width(section))} here where a support has none of its own,"
+        f" {gap_label(gap, outer_width(section))} here if a support has none of its own,"
         f" before it touches; gaps are drawn {scale:g} times too large."
         f"{_holes_left_out(holes)} The tube is the one of the configuration, not the drawing of a"
         " rig."
@@ -380,7 +380,7 @@ def _direction(axes, spot, direction, view):
 def free_modes(structure, highest_Hz, count=SHOWN_MODES):
     """Return (frequency (mode,) Hz, shapes (mode, node, 3)) of the lowest modes without contact.
 
-    The largest displacement of a shape is 1. Fewer than `count` modes are returned where fewer lie
+    The largest displacement of a shape is 1. Fewer than `count` modes are returned if fewer lie
     below highest_Hz.
     """
     groups = uncoupled_groups(structure.mass, structure.stiffness, structure.contact_rows())

@@ -20,15 +20,15 @@ SAME_RATE = 1e-3  # relative
 
 @dataclass(frozen=True)
 class Arrays:
-    """What a file holds.
+    """The content of a file.
 
     path: of the file.
     columns {name: array}: numbers.
-    units {name: text}, unit_from: units of the columns, and where in the file they stand.
+    units {name: text}, unit_from: units of the columns, and their places in the file.
     attributes: of the file.
     note: how the file was read.
     lines (time,): line of the file that holds a sample, None if there are no lines.
-    left_out {name: why}: what else the file holds, in words that follow the name.
+    left_out {name: why}: the other contents of the file, in words that follow the name.
     """
 
     path: str | Path
@@ -44,8 +44,8 @@ class Arrays:
 def signals_of_arrays(arrays: Arrays) -> list[Signal]:
     """Return a Signal for every row of the arrays that have the sampling of the file.
 
-    Rows of an array are named name[index], from 0, where it has several. Raises ImportProblem where
-    there is none, or where the sampling frequency and the time disagree.
+    Rows of an array are named name[index], from 0, if it has several. Raises ImportProblem if
+    there is none, or if the sampling frequency and the time disagree.
     """
     stated = _stated_rate(arrays)
     stamps = next((name for name in arrays.columns if name.lower() in TIME_NAMES), None)

@@ -62,9 +62,9 @@ def read_csv(path: str | Path) -> list[Signal]:
 
 
 def _header(path, numbered, lines, separator):
-    """Return the cells of the line of names, which is taken out of lines where it is no comment.
+    """Return the cells of the line of names, which is taken out of lines if it is no comment.
 
-    It is the first line of the table, or the last comment above it where that holds numbers.
+    It is the first line of the table, or the last comment above it if that holds numbers.
     """
     number, first = lines[0]
     cells = first.split(separator)

@@ -18,7 +18,7 @@ UNREAD = {
     ".mf4": "is an ASAM MDF file, which is not read: export it as CSV or MATLAB, or convert it with"
     " the Python package asammdf",
     ".wav": "is a sound file, which has no units: export it as MATLAB or UFF",
-    ".txt": "is a text file: where it holds a table, rename it to .csv",
+    ".txt": "is a text file: if it holds a table, rename it to .csv",
     ".xlsx": "is a workbook, which is not read: save its sheet as CSV",
 }
 for alike, known in ((".mdf", ".mf4"), (".asc", ".txt"), (".dat", ".txt"), (".xls", ".xlsx")):
@@ -46,12 +46,12 @@ class Signal:
     values (time,): in `unit`.
     rate: Hz, None if the file does not state it.
     unit, kind, point (3,) m, direction (3,), force: as the file states them, else "" or None.
-    unit_from: where in the file the unit stands.
+    unit_from: the place of the unit in the file.
     aliases: other names of the signal.
     note: how the file was read and its values were changed.
     start: s, of the first sample; None if the file has no time.
     lines (time,): line of the file that holds a sample, None if the file has none.
-    left_out: {name: why} of what else the file holds, in words that follow the name.
+    left_out: {name: why} of the other contents of the file, in words that follow the name.
     """
 
     name: str
@@ -71,7 +71,7 @@ class Signal:
     left_out: Mapping[str, str] = field(default_factory=dict)
 
     def place(self, sample: int) -> str:
-        """Return where a sample stands: "low.csv, line 38, column tip" or "low.mat, tip[38]"."""
+        """Return the place of a sample: "low.csv, line 38, column tip" or "low.mat, tip[38]"."""
         file = Path(self.file).name
         if self.lines is not None and sample < len(self.lines):
             return f"{file}, line {self.lines[sample]}, column {self.name}"
@@ -85,7 +85,7 @@ def even_samples(time: np.ndarray, values: np.ndarray, place: str) -> tuple[np.n
     values (..., time).
     place: file and signal, for messages.
 
-    Stamps count as even where they scatter by less than a twentieth of a step, by less than their
+    Stamps count as even if they scatter by less than a twentieth of a step, by less than their
     six printed digits, or by the digits that they are rounded to. Others are interpolated by a
     cubic spline at the mean step, and the note says so. Raises ImportProblem for lost samples or
     stamps that do not increase.
@@ -130,7 +130,7 @@ def even_samples(time: np.ndarray, values: np.ndarray, place: str) -> tuple[np.n
 
 
 def _rounding(time: np.ndarray, step: float) -> float:
-    """Return the power of ten in s that time stamps (time,) are rounded to where they have the
+    """Return the power of ten in s that time stamps (time,) are rounded to if they have the
     fewest decimals, at the end; 0 if it is finer than six digits or no small part of a step.
     """
     largest = np.abs(time).max()
@@ -143,6 +143,6 @@ def _rounding(time: np.ndarray, step: float) -> float:
 
 
 def whole_rate(rate: float, within: float = 0.0) -> float:
-    """Return a sampling frequency in Hz, whole where it is so to six digits, or within a share."""
+    """Return a sampling frequency in Hz, whole if it is so to six digits, or within a share."""
     whole = abs(rate - round(rate)) < max(WHOLE_WITHIN, within) * rate
     return float(round(rate)) if whole else float(rate)
