@@ -7,24 +7,17 @@ TEXT = f"""## Choice of the step
 From `results/benchmark/work_precision.csv` (`python -m evidence.benchmarks.work_precision`, part of
 `make benchmark`). Both schemes cost the same per step.
 
-| problem | compared with | runs | finding |
-| --- | --- | --- | --- |
-| R3, a mass driven against a stiff stop | published contact times | one | both find the touch \
-inside a step to second order |
-| R11, an oscillator between two stops under white noise | exact stationary statistics | 64, in \
-batches of eight | the exact step is 1.15 to 1.5 times nearer to the law |
-| the tube | Newmark at 1/204800 s under the same forces, in RMS over the statistics | 16 records \
-of 16 s per load | chaotic motion: no difference above {UNSEEN:g} standard errors of the seeds |
+- R3, a mass driven against a stiff stop, against published contact times: both schemes find the
+  touch inside a step to second order.
+- R11, an oscillator between two stops under white noise, against exact stationary statistics, 64
+  runs: the exact step is 1.15 to 1.5 times nearer to the law.
+- The tube, against Newmark at 1/204800 s under the same forces, 16 records of 16 s per load:
+  chaotic motion, no difference above {UNSEEN:g} standard errors of the seeds.
 
 **Linear motion decides.** Newmark lowers the frequency of a mode by (omega dt)²/12: at 1 kHz by
-0.8 % with 20480 steps per second, by 0.13 % with 51200. At 20480 it is refused with modes to 7.5 \
-kHz
-(omega dt = 2.3). The exact step has no such error.
-
-The default is therefore the exact step at 20480, half the cost of the paper's step. It loses \
-more
-energy at each crossing of the gap (1.3 % of the input work, not 0.2 %) and the tips of force and
-stress peaks.
+0.8 % with 20480 steps per second, by 0.13 % with 51200. The default is therefore the exact step
+at 20480, half the cost of the paper's step. It loses more energy at each crossing of the gap
+(1.3 % of the input work, not 0.2 %) and the tips of force and stress peaks.
 """
 
 

@@ -120,5 +120,5 @@ def test_volts_and_reserved_names_drive_no_model(campaign):
 def test_results_of_draws_are_not_overwritten():
     for pool in ("acceptance", "development"):
         assert "which the target acceptance writes" in name_problem(draw_name(pool, 3))
-    assert "where the study 'bench' is" in name_problem("bench", "bench")
+    assert "the folder of the study 'bench'" in name_problem("bench", "bench")
     assert name_problem("bench") is None

@@ -80,7 +80,7 @@ def test_strain_is_stored_with_its_unit(folder):
 
 
 def test_acceleration_among_forces_asks_what_moves(folder):
-    with pytest.raises(ImportProblem, match="kind: base_acceleration where all that holds"):
+    with pytest.raises(ImportProblem, match="kind: base_acceleration if all that holds"):
         imported(folder, TABLE | {"kind": "acceleration"})
 
 

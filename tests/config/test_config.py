@@ -403,7 +403,7 @@ STRUCTURE_REFUSALS = [
         ["fluid[1] = 'outside' overlaps another fluid outside"],
     ),
     ({"fluid": [WATER | {"to_m": [0.5, 0.1, 0.0]}]}, ["fluid[0].to_m", "0.1000 m off the tube"]),
-    ({"fluid": [WATER | {"to_m": [0.0, 0.0, 0.0]}]}, ["fluid[0].to_m", "where the fluid begins"]),
+    ({"fluid": [WATER | {"to_m": [0.0, 0.0, 0.0]}]}, ["fluid[0].to_m", "start of the fluid"]),
     (
         {
             "fluid": [
@@ -620,7 +620,7 @@ def test_a_mass_named_ground_and_a_stop_twice_are_refused():
     chain["structure"]["masses"].append({"name": "ground", "mass_kg": 1.0})
     told = "\n".join(problems(chain))
     assert "supports[1] = 'again' is 'stops' again" in told
-    assert "structure.masses[1].name = 'ground' is what springs name the earth" in told
+    assert "structure.masses[1].name = 'ground' is the name of the earth in springs" in told
 
 
 FLOW = {  # stages read parts of it

@@ -82,7 +82,7 @@ def test_a_yaml_error_names_file_line_and_column(tmp_path, text, place, parts):
         ("a: 1\n".encode("utf-16-be"), "no text in UTF-8"),
         (b"a: 1\n" + bytes(1) + b"\n", "is a binary file or no text in UTF-8"),
         (b"#" * 10_000_001, "is larger than 10 MB"),
-        (b"__use_yte__: true\na: 1\n", "__use_yte__ would run what the file holds"),
+        (b"__use_yte__: true\na: 1\n", "__use_yte__ would run the content of the file"),
         (b"", "holds no keys"),
         (b"- 1\n- 2\n", "holds no keys"),
     ],

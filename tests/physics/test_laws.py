@@ -389,9 +389,7 @@ def test_damper_with_a_limit_is_linear_then_dry_friction():
 
 
 def test_laws_refuse_impossible_contacts():
-    with pytest.raises(
-        ValueError, match="stick_stiffness must be positive where there is friction"
-    ):
+    with pytest.raises(ValueError, match="stick_stiffness must be positive if there is friction"):
         ContactLaws.neutral(2).with_columns(friction=0.2)
     with pytest.raises(ValueError, match="damping = .* must be finite and not negative"):
         ContactLaws.neutral(2).with_columns(damping=-1.0)

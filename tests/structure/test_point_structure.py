@@ -269,7 +269,7 @@ REFUSED = [
     ),
     (
         {"integration": {"steps_per_second": 20000, "start_up_s": 1.0}},
-        "must be 0 where every step is kept",
+        "must be 0 if every step is kept",
     ),
     ({"record": {"duration_s": 900.0, "every_step": True}}, "shorten record.duration_s"),
     (

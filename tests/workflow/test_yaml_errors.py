@@ -51,7 +51,10 @@ DAMAGED = {
     "Latin-1 text": (b"study: mine # \xb5\n", "line 1, column 15: a character that is not UTF-8"),
     "text of 10000 brackets": (b"study: " + 10000 * b"[", "nested in more than 30 blocks"),
     "list of aliases that repeat each other": (BOMB, "more than 100000 values"),
-    "template that runs code": (b"__use_yte__: true\n?1/0: 1\n", "would run what the file holds"),
+    "template that runs code": (
+        b"__use_yte__: true\n?1/0: 1\n",
+        "would run the content of the file",
+    ),
 }
 
 
