@@ -69,8 +69,7 @@ def write_page(path, rows, growth, peers, absent, machine, figure, work_precisio
     parts = [
         INTRODUCTION,
         f"![Ratios of CPU time]({figure})\n",
-        "## Machine\n",
-        _table(("property", "this machine"), machine.items()),
+        f"Machine: {'; '.join(f'{what} {value}' for what, value in machine.items())}.\n",
     ]
     parts += ["## Ours\n", OWN_CELL, _own_times(rows)]
     parts += ["## The peers\n", PEERS_CELL, _ratios(rows)]
