@@ -14,10 +14,8 @@ From `results/benchmark/work_precision.csv` (`python -m evidence.benchmarks.work
 - The tube, against Newmark at 1/204800 s under the same forces, 16 records of 16 s per load:
   chaotic motion, no difference above {UNSEEN:g} standard errors of the seeds.
 
-**Linear motion decides.** Newmark lowers the frequency of a mode by (omega dt)²/12: at 1 kHz by
-0.8 % with 20480 steps per second, by 0.13 % with 51200. The default is therefore the exact step
-at 20480, half the cost of the paper's step. It loses more energy at each crossing of the gap
-(1.3 % of the input work, not 0.2 %) and the tips of force and stress peaks.
+The default is the exact step at 20480, half the cost of the paper's step
+([reasons](method/integration.md#which-scheme)).
 """
 
 
