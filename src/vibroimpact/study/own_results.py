@@ -35,7 +35,7 @@ def model_attributes(path: str | Path) -> dict[str, Any]:
     return {MODEL_DIGEST: read_attributes(path).get(SIMULATED, "")}
 
 
-def own_records(folder: Path, config: Config) -> list[Path]:
+def usable_records(folder: Path, config: Config) -> list[Path]:
     """Return the records of the cases of a study, in the order of its grid.
 
     Files of cases that the grid does not have are left out.

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from vibroimpact.config.reading import load_config
 from vibroimpact.config.wear import Wear
-from vibroimpact.study.own_results import own_records
+from vibroimpact.study.own_results import usable_records
 from vibroimpact.study.run_files import CONFIG_FILE
 
 from .life import NoWear, WearRow, wear_rows
@@ -22,4 +22,4 @@ def wear_life(folder: str | Path, wear: Wear) -> list[WearRow]:
     if not any((folder / "records").glob("*.nc")):
         raise NoWear(f"{folder / 'records'}: there are no records: give the results of a study")
     config = load_config(folder / CONFIG_FILE)
-    return wear_rows(config, own_records(folder, config), wear)
+    return wear_rows(config, usable_records(folder, config), wear)
