@@ -6,6 +6,7 @@ delay D/V. References: closed forms, and integrations of the same equations by a
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -121,9 +122,7 @@ def stop_checks(folder: Path) -> list[Check]:
     checks = []
     for over, (first_harmonic, integrated) in CYCLES_MM.items():
         velocity = over * CRITICAL
-        found = 1e3 * amplitude_where(
-            lambda size, velocity=velocity: tube.limit_cycle(GAP, size) - velocity
-        )
+        found = 1e3 * amplitude_where(partial(_beyond, tube, velocity))
         name = f"amplitude at {over:g} V_c"
         named = f"{name}, describing function"
         timed = 1e3 * last_amplitude(folder, ONE_LAG, velocity)
@@ -132,6 +131,11 @@ def stop_checks(folder: Path) -> list[Check]:
             Check("F6", f"{name}, in time", "mm", integrated, SOLVED, timed, WIDE),
         ]
     return checks
+
+
+def _beyond(tube: ModelInFlow, velocity: float, size: float) -> float:
+    """Return by how much the velocity of a cycle of an amplitude in m exceeds another, m/s."""
+    return tube.limit_cycle(GAP, size) - velocity
 
 
 def net_damping(model: ModalModel) -> tuple[FluidForce, float, float]:

@@ -86,7 +86,7 @@ def two_phase_checks(folder: Path) -> list[Check]:
     config = load_config(folder / "f3_two_phase_bundle.yaml")
     row = stability(config).rows[0]
     without = config.model_dump(mode="json")["structure"]["fluid"]
-    without[1]["mixture"]["damping"] = None
+    without[1]["two_phase_damping"] = None
     changes = {"structure.fluid": without, "damping.other_ratio": 0.01}
     stated = stability(changed_config(config, changes)).rows[0]
     without[1] |= {"mixture": None, "density_kg_per_m3": 750.0}
