@@ -152,6 +152,29 @@ class NegativeDamping(Section):
 Coupling = Annotated[Lags | QuasiSteady | ConnorsForce | NegativeDamping, By_kind]
 
 
+class DimensionlessTurbulence(Section):
+    """Turbulence with the dimensionless spectrum of `excitation`: at each velocity its frequencies
+    and its level are those of that velocity. A load of the grid is that at the velocity of
+    excitation.spectrum.
+    """
+
+    kind: Literal["dimensionless"] = Field(
+        description="This kind of turbulence.", examples=["dimensionless"]
+    )
+
+
+class PowerTurbulence(Section):
+    """A force whose RMS rises with a power of the velocity, and whose spectrum stays the same."""
+
+    kind: Literal["power"] = Field(description="This kind of turbulence.", examples=["power"])
+    exponent: Annotated[
+        Number, Range("2 for a force like the dynamic pressure", at_least=0, at_most=10), Unit("1")
+    ] = Field(description="Exponent of the velocity.", examples=[2.0])
+    at_m_per_s: Velocity = Field(
+        description="Velocity at which the force has the load of the grid.", examples=[2.0]
+    )
+
+
 class Flow(Section):
     """A flow across the tube, for `vibroimpact stability` and, with acting_m_per_s, for the
     simulation.
@@ -186,6 +209,11 @@ class Flow(Section):
     )
     coupling: Coupling | None = Field(
         None, description="Fluid-elastic force, for eigenvalues against velocity; null for none."
+    )
+    turbulence: Annotated[DimensionlessTurbulence | PowerTurbulence, By_kind] | None = Field(
+        None,
+        description="How the force of `excitation` follows the velocity in `vibroimpact stability"
+        " --simulate`; null: it is the same at each.",
     )
     acting_m_per_s: Velocity | None = Field(
         None,
