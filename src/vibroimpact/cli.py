@@ -320,7 +320,8 @@ def _study(data: dict, path: str) -> tuple[str | None, list[str]]:
         f"study '{config.study}': structure of kind {config.structure.kind}{_named(config)},"
         f" {_count(len(config.supports), 'support')}, {_count(len(config.elements), 'element')},"
         f" excitation of kind {config.excitation.kind},"
-        f" {_count(len(all_cases(config.grid)), 'case')} {aim}{_load_of_spectrum(config)}{files}{_in_flow(config)}",
+        f" {_count(len(all_cases(config.grid)), 'case')} {aim}"
+        f"{_load_of_spectrum(config)}{files}{_in_flow(config)}",
         [f"{path}: warning: {warning}" for warning in found.warnings],
     )
 

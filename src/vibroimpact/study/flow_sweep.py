@@ -328,10 +328,13 @@ def equivalent_onset(tubes: Sequence[Equivalent]) -> float:
     if not unstable.size:
         return float("nan")
     last = int(unstable[0])
-    if last == 0 or not np.isfinite(critical[last - 1]):
-        return float(min(critical[last], velocities[last]) if last == 0 else velocities[last])
-    excess = np.log(velocities / critical)[last - 1 : last + 1]
-    return float(np.interp(0.0, excess, velocities[last - 1 : last + 1]))
+    if last == 0:
+        return float(critical[0])
+    if not np.isfinite(critical[last - 1]):
+        return float(velocities[last])
+    pair = slice(last - 1, last + 1)  # a constant V_c is met exactly
+    excess = np.log(velocities / critical)[pair]
+    return float(np.exp(np.interp(0.0, excess, np.log(velocities[pair]))))
 
 
 def onset_of(runs: Sequence[FlowRun]) -> float:
