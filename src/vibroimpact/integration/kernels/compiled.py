@@ -24,6 +24,7 @@ config: Any = numba_config  # its settings are made at run time
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 SOURCES = Path(__file__).parent
+PACKAGE = __name__.split(".")[-2]  # see lanes.LANES
 # Without numba's reference counts: counting each array of a table at each use costs five times the
 # arithmetic. No compiled function allocates; work space is handed in.
 WITHOUT_REFERENCE_COUNTS: dict[str, Any] = {"_nrt": False}
@@ -74,7 +75,7 @@ def entry_point(function: Function) -> Function:
     """
     if IMPORTED_SOURCES and source_digest() == IMPORTED_SOURCES:
         for place in cache_places():
-            compiled = _compiled_with_cache(function, place / f"kernels-{IMPORTED_SOURCES}")
+            compiled = _compiled_with_cache(function, place / f"{PACKAGE}-{IMPORTED_SOURCES}")
             if compiled is not None:
                 return compiled
         _say_once(NO_CACHE, ", ".join(f"no writing in {place}" for place in cache_places()))
