@@ -135,9 +135,32 @@ class ModalLayout:
             shape_start=_starts(shapes),
             row_compliance=np.concatenate([*compliance, np.zeros(1)]),
             compliance_start=_starts(compliance),
+            **self._blocks(shapes, compliance),
             velocity_weights=step.velocity_weights,
             **{name: self.per_mode(getattr(step, name)) for name in MODE_COEFFICIENTS},
         )
+
+    def _blocks(
+        self, shapes: list[np.ndarray], compliance: list[np.ndarray]
+    ) -> dict[str, np.ndarray]:
+        """The tables of Modal for one run, from those of every group."""
+        by_mode, by_force = [], []
+        for g, (flat, square) in enumerate(zip(shapes, compliance, strict=True)):
+            width, implicit = np.diff(self.mode_start)[g], len(self.implicit_shapes[g])
+            if self.lanes == 1:
+                blocks = _blocks_of_rows(flat.reshape(-1, width))
+                panels = blocks.reshape(len(blocks), width // PANEL, PANEL, PANEL)
+                by_mode.append(panels.transpose(1, 0, 2, 3).ravel())
+                rows = int(np.sqrt(square.size))
+                on_forces = square.reshape(rows, rows)[:implicit, :implicit]
+                by_force.append(_blocks_of_rows(on_forces).ravel())
+        none = [np.zeros(0)]
+        return {
+            "block_shapes": np.concatenate(by_mode + none),
+            "block_shape_start": _starts(by_mode + none),
+            "block_compliance": np.concatenate(by_force + none),
+            "block_compliance_start": _starts(by_force + none),
+        }
 
     @cache  # noqa: B019 (a layout lives as long as its run)
     def step(self, dt: float) -> StepCoefficients:
@@ -479,6 +502,12 @@ def _whole_blocks(channels: np.ndarray, filler: int) -> list[int]:
     return [int(channel) for channel in channels] + [filler] * (-len(channels) % CHANNEL_BLOCK)
 
 
+def _blocks_of_rows(values: np.ndarray) -> np.ndarray:
+    """values (row, column) as (block, column, PANEL rows), padded with zeros."""
+    padded = np.pad(values, ((0, -len(values) % PANEL), (0, 0)))
+    return padded.reshape(len(padded) // PANEL, PANEL, values.shape[1]).transpose(0, 2, 1)
+
+
 def _starts(parts: Sequence[np.ndarray]) -> np.ndarray:
     """Index of the first value of each part when they are put end to end."""
     return np.concatenate([[0], np.cumsum([part.size for part in parts])[:-1]]).astype(np.int64)
@@ -490,8 +519,10 @@ def _inverse(values: np.ndarray) -> np.ndarray:
 
 
 def _aligned(shape: tuple[int, ...]) -> np.ndarray:
-    """Zeros that start on a cache line, so that no vector straddles two."""
+    """Zeros that start on a cache line, so that no vector straddles two; room behind them for a
+    block of rows.
+    """
     count = int(np.prod(shape))
-    raw = np.zeros(count + 8)
+    raw = np.zeros(count + 8 + PANEL)
     first = (-raw.ctypes.data // 8) % 8
     return raw[first : first + count].reshape(shape)
