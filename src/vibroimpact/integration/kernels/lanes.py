@@ -231,6 +231,21 @@ def store(typing_context, array, i, value):
 
 
 @intrinsic
+def fetch_to_write(typing_context, array, i):
+    """Bring vector i of an array to the cache: a store that misses it holds up all stores behind."""
+
+    def code(context, builder, sig, args):
+        at = _lane_address(context, builder, sig.args[0], *args, ir.IntType(8))
+        kind = ir.FunctionType(ir.VoidType(), [at.type] + [INT32] * 3)
+        fetch = cgutils.get_or_insert_function(builder.module, kind, "llvm.prefetch.p0")
+        flags = [ir.Constant(INT32, flag) for flag in (1, 3, 1)]  # to write, to keep, data
+        builder.call(fetch, [at, *flags])
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp), code
+
+
+@intrinsic
 def fma(typing_context, a, b, c):
     """a * b + c, rounded once."""
 
