@@ -232,7 +232,7 @@ def store(typing_context, array, i, value):
 
 @intrinsic
 def fetch_to_write(typing_context, array, i):
-    """Bring vector i of an array to the cache: a store that misses it holds up all stores behind."""
+    """Bring vector i of an array to the cache: a store that misses it holds up those behind it."""
 
     def code(context, builder, sig, args):
         at = _lane_address(context, builder, sig.args[0], *args, ir.IntType(8))

@@ -56,7 +56,9 @@ def _modes(builder, panel):
     """The panel as a lane vector for each mode."""
     if SPAN == 1:
         return _vectors(builder, panel)
-    return [_picked(builder, vector, [m]) for vector in _vectors(builder, panel) for m in range(SPAN)]
+    return [
+        _picked(builder, vector, [m]) for vector in _vectors(builder, panel) for m in range(SPAN)
+    ]
 
 
 def _over_modes(builder, vector):
