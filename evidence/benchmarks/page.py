@@ -35,8 +35,8 @@ Obstacles are off the
 - **Ratios**, median (smallest to largest), come from runs that alternate in one process. Slow \
 peers run
   a short stretch with less contact, which favours them. Absolute times hold for this machine.
-- **Batches.** Eight runs share a 512-bit vector; one run costs nearly as much. The plain loop, and
-  JAX without its batch, take one run at a time.
+- **Batches.** Eight runs share a 512-bit vector; the vectors of one run lie along its modes. The
+  plain loop, and JAX without its batch, take one run at a time.
 - **Step.** Ours, the plain loop, JAX and Exudyn use Newmark at {RATE} steps per second; the study
   uses [another step](#choice-of-the-step).
 - **FMA peak**: the arithmetic of the step alone at the peak rate of the core.
