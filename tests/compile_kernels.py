@@ -1,4 +1,4 @@
-"""Compile both integration kernels, or find them compiled: `python -m tests.compile_kernels`.
+"""Compile the integration kernels, or find them compiled: `python -m tests.compile_kernels`.
 
 Run once before the tests are spread over processes, each of which would compile them otherwise.
 """
@@ -12,18 +12,17 @@ import multiprocessing
 import numpy as np
 
 
-def library_kernel():
+def library_kernel(cases):
     """Integrate a mass between stops for a few steps."""
     from tests.support.oscillator import oscillator
     from vibroimpact.integration.batch import Schedule, integrate_batch
-    from vibroimpact.integration.kernels.lanes import LANES
 
     integrate_batch(
         oscillator(1.0, 400.0, contact_stiffness=1.0e5),
         Schedule(20480, 2048, 0.0, 0.02, "exact"),
-        np.full(LANES, 1.0e-3),
-        np.zeros((1, 2, LANES)),
-        lambda first, count: np.zeros((count, 1, LANES)),
+        np.full(cases, 1.0e-3),
+        np.zeros((1, 2, cases)),
+        lambda first, count: np.zeros((count, 1, cases)),
     )
 
 
@@ -36,7 +35,11 @@ def truth_kernel():
 
 
 if __name__ == "__main__":
-    jobs = [multiprocessing.Process(target=job) for job in (library_kernel, truth_kernel)]
+    jobs = [
+        multiprocessing.Process(target=library_kernel, args=(2,)),
+        multiprocessing.Process(target=library_kernel, args=(1,)),  # a run alone has its own
+        multiprocessing.Process(target=truth_kernel),
+    ]
     for job in jobs:
         job.start()
     for job in jobs:

@@ -225,7 +225,11 @@ def test_modules_are_imported_by_name():
     # provenance.imported_files reads import statements: a name made at run time would hide a file
     # from its rule.
     for file in [*FILES, *SCRIPTS]:
-        by_name = file in (LIBRARY / "io" / "provenance.py", LIBRARY / "__init__.py")
+        by_name = file in (
+            LIBRARY / "io" / "provenance.py",
+            LIBRARY / "__init__.py",
+            LIBRARY / "integration" / "entry_points.py",  # files that it imports by name as well
+        )
         assert by_name or "importlib" not in imported_tops(file), file
         calls = {
             node.func.id

@@ -45,7 +45,7 @@ def available(files, say=print):
     found, absent = {}, []
     for file in files:
         try:
-            found[file] = importlib.import_module(f"benchmarks.peers.{file}").peers()
+            found[file] = importlib.import_module(f"evidence.benchmarks.peers.{file}").peers()
         except PeerAbsent as error:
             absent.append(f"{error}")
             say(f"skipped: {error}")

@@ -32,8 +32,8 @@ modes alone.
   statistics, energies and records; the peers keep three displacements.
 - **Ratios** are medians of runs that alternate in one process. Slow peers run a short stretch
   with less contact, which favours them.
-- **Batches.** Eight runs share a 512-bit vector. The plain loop, and JAX without its batch, take
-  one run at a time.
+- **Batches.** Eight runs share a 512-bit vector; the vectors of one run lie along its modes. The
+  plain loop, and JAX without its batch, take one run at a time.
 - **Step.** Ours, the plain loop, JAX and Exudyn use Newmark at {RATE} steps per second; the study
   uses [another step](#choice-of-the-step).
 """

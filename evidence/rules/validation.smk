@@ -8,6 +8,7 @@ REFERENCE_GROUPS = (
     "r11_stops_100",
     "r11_stops_1000",
     "r11_one_stop",
+    "flow",
 )
 PREDICTION_CASES = ("left_out", "gaps", "second_tube")
 

@@ -320,7 +320,8 @@ def _study(data: dict, path: str) -> tuple[str | None, list[str]]:
         f"study '{config.study}': structure of kind {config.structure.kind}{_named(config)},"
         f" {_count(len(config.supports), 'support')}, {_count(len(config.elements), 'element')},"
         f" excitation of kind {config.excitation.kind},"
-        f" {_count(len(all_cases(config.grid)), 'case')} {aim}{_load_of_spectrum(config)}{files}",
+        f" {_count(len(all_cases(config.grid)), 'case')} {aim}"
+        f"{_load_of_spectrum(config)}{files}{_in_flow(config)}",
         [f"{path}: warning: {warning}" for warning in found.warnings],
     )
 
@@ -335,6 +336,15 @@ def _load_of_spectrum(config) -> str:
     velocity = getattr(force.spectrum, "velocity_m_per_s", None)
     source = "its table" if velocity is None else f"{velocity:g} m/s"
     return f"; {source} is a load_rms_N of {load_of_spectrum(config.structure, force):.4g}"
+
+
+def _in_flow(config) -> str:
+    """Return the modes with supports open, closed and equivalent, "" without a flow."""
+    if config.flow is None:
+        return ""
+    from vibroimpact.equivalent_support.in_flow import modes_in_flow
+
+    return modes_in_flow(config)
 
 
 def _named(config) -> str:

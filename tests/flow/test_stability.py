@@ -9,6 +9,7 @@ import vibroimpact as vi
 from tests.support.straight_path import straight_path
 from vibroimpact.cli import main
 from vibroimpact.config.problems import ConfigError
+from vibroimpact.flow.along import tube_in_flow
 from vibroimpact.flow.stability import NoFlow
 
 FLOW = {
@@ -17,7 +18,6 @@ FLOW = {
     "direction": [0.0, 1.0, 0.0],
     "criterion": {"kind": "connors", "constant": [4.5]},
 }
-WATER = {"kind": "outside", "density_kg_per_m3": 1000.0, "viscosity_Pa_s": 0.0}
 QUASI_STEADY = {
     "kind": "lags",
     "stiffness": 20.0,
@@ -77,22 +77,83 @@ def test_a_clamped_tube_in_a_parabola_of_water():
     assert row.effective / critical == pytest.approx(0.200887, rel=2e-3)
 
 
-def test_a_tube_of_a_square_bundle_in_steam_and_water():
-    density = 0.85 * 33.2 + 0.15 * 750.0
-    bundle = {"kind": "bundle", "pitch_m": 0.0325, "pattern": "square"}
+MIXTURE = {
+    "void_fraction": 0.85,
+    "liquid_density_kg_per_m3": 750.0,
+    "vapour_density_kg_per_m3": 33.2,
+}
+BUNDLE = {"kind": "bundle", "pitch_m": 0.0325, "pattern": "square"}
+
+
+def in_steam(void=0.85, numbers=None, flow=None, confinement=None, zeta=0.0):
+    """A tube of a square bundle in steam and water; numbers: of two_phase_damping."""
+    mixture = MIXTURE | {"void_fraction": void}
+    outside = {"kind": "outside", "viscosity_Pa_s": 0.0, "confinement": confinement or BUNDLE}
     fluid = [
         {"kind": "inside", "density_kg_per_m3": 740.0},
-        WATER | {"density_kg_per_m3": density, "confinement": bundle},
+        outside | {"mixture": mixture, "two_phase_damping": numbers},
     ]
     rule = {"kind": "connors", "constant": [3.0, 2.4]}
-    flow = {"density_kg_per_m3": density, "criterion": rule}
+    given = {"density_kg_per_m3": None, "mixture": mixture, "criterion": rule} | (flow or {})
     material, ends = (211e9, 0.3, 8190.0), ("pinned", "pinned")
-    config = tube(0.02222, 0.00127, material, ends, fluid, flow, zeta=0.01)
-    row = vi.stability(config).rows[0]
+    return tube(0.02222, 0.00127, material, ends, fluid, given, zeta=zeta)
+
+
+def check_again(config):
+    """A configuration read from its own numbers."""
+    return vi.check_config(config.model_dump(mode="json"), "again")
+
+
+def test_a_tube_of_a_square_bundle_in_steam_and_water():
+    row = vi.stability(in_steam(zeta=0.01)).rows[0]
     assert row.frequency == pytest.approx(49.431, rel=2e-3)
     assert row.critical_high == pytest.approx(3.1031, rel=2e-3)
     assert row.critical_low == pytest.approx(2.4825, rel=2e-3)
     assert row.effective == pytest.approx(1.0, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("void", "ratio"), [(0.85, 0.01047), (0.0, 0.0), (0.2, 0.5), (0.6, 1.0), (1.0, 0.0)]
+)
+def test_two_phases_damp_between_liquid_and_vapour(void, ratio):
+    """1.047 % at 85 %; elsewhere the share of the plateau, whose ratio is over the mass."""
+    numbers = {"coefficient": 0.04, "plateau": [0.4, 0.7]}
+    config = in_steam(void, numbers)
+    row = vi.stability(config).rows[0]
+    if void != 0.85:
+        mass = float(tube_in_flow(config, config.flow).along.mass.mean())
+        ratio *= 0.04 * 750.0 * 0.02222**2 / mass * 1.38695
+    assert row.damping_ratio == pytest.approx(ratio, rel=1e-3, abs=1e-12)
+
+
+def test_a_mixture_has_the_mean_density_everywhere():
+    """As the flow, the added mass and the flow of a stretch."""
+    stretch = {"from_m": [0, 0, 0], "to_m": [0, 0, 1], "mixture": MIXTURE}
+    config = in_steam(flow={"stretches": [stretch], "mixture": None, "density_kg_per_m3": 9.0})
+    along = tube_in_flow(config, config.flow).along
+    assert along.density == pytest.approx(0.85 * 33.2 + 0.15 * 750.0)
+    assert config.structure.fluid[1].density_kg_per_m3 == pytest.approx(140.72)
+    assert check_again(config) == config
+
+
+@pytest.mark.parametrize(
+    ("keys", "told"),
+    [
+        ({"void": 85.0}, "structure.fluid[1].mixture.void_fraction = 85.0 must be <= 1"),
+        ({"void": -0.1}, "flow.mixture.void_fraction = -0.1 must be >= 0"),
+        ({"flow": {"density_kg_per_m3": 500.0}}, "500.0 is not that of the mixture, 140.72"),
+        ({"flow": {"mixture": None}}, "flow.density_kg_per_m3 is missing: give it, or a mixture"),
+        ({"numbers": {"coefficient": 0.04}}, "damping.plateau is missing"),
+        ({"numbers": {"coefficient": 4.0, "plateau": [0.4, 0.7]}}, "4 % is 0.04"),
+        ({"confinement": {"kind": "coefficient", "added_mass_coefficient": 1.0}}, "annulus"),
+    ],
+)
+def test_bad_mixtures_are_refused(keys, told):
+    numbers = {"coefficient": 0.04, "plateau": [0.4, 0.7]}
+    with pytest.raises(ConfigError) as refused:
+        in_steam(**({"numbers": numbers} | keys))
+    assert told in str(refused.value)
+    assert len(refused.value.problems) <= 2
 
 
 def supported(**flow):

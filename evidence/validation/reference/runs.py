@@ -12,9 +12,12 @@ from vibroimpact.study.cases import all_cases, load_values
 from vibroimpact.study.simulation import simulate_cases
 
 from . import cases as reference_cases
+from . import flow_in_time
+from .flow_stability import stability_checks
 from .frequencies import frequency_checks
 from .random_stops import StopCase, law_checks, linearisation_check
 from .tubes import LAUNCHED_MM, cantilever_checks, launched_beam_checks
+from .wear_depth import wear_checks
 
 STEPS = (200_000, 400_000, 800_000, 1_600_000)  # per second, of R3's order
 # The position of a contact within a step is random, so that the order from four steps scatters.
@@ -117,10 +120,21 @@ def random_stop_checks(folder: Path, name: str) -> list[Check]:
     return checks
 
 
+def flow_checks(folder: Path) -> list[Check]:
+    """Return the Checks of F1 to F12: flow and wear.
+
+    folder: of the reference configurations.
+    """
+    checks = stability_checks(folder) + flow_in_time.eigenvalue_checks(folder)
+    checks += flow_in_time.stop_checks(folder) + flow_in_time.friction_checks(folder)
+    checks += flow_in_time.damped_stop_checks(folder) + flow_in_time.white_noise_checks(folder)
+    return sorted(checks + wear_checks(), key=lambda check: int(check.case[1:]))
+
+
 def reference_group(group: str, study, folder: Path) -> tuple[list[Check], list[dict]]:
     """Return (Checks, rows of R3's order) of one group of reference cases.
 
-    group: "frequencies", "impacts", "tubes", or a name of WHITE_SIGMA.
+    group: "frequencies", "impacts", "tubes", "flow", or a name of WHITE_SIGMA.
     study: the configuration of the stand-in tube.
     folder: of the reference configurations.
     """
@@ -130,4 +144,6 @@ def reference_group(group: str, study, folder: Path) -> tuple[list[Check], list[
         return impact_checks(folder)
     if group == "tubes":
         return tube_checks(folder), []
+    if group == "flow":
+        return flow_checks(folder), []
     return random_stop_checks(folder, group), []

@@ -338,6 +338,7 @@ TUBE_CHECKS: tuple[Callable[..., Problems], ...] = (
     flow_checks.stretches,
     flow_checks.direction,
     flow_checks.pitch,
+    flow_checks.covered,
     _step_and_modes,
 )
 POINT_CHECKS: tuple[Callable[..., Problems], ...] = (
@@ -378,6 +379,7 @@ CHECKS: tuple[Callable[..., Problems], ...] = (
     flow_checks.lags,
     flow_checks.acting,
     flow_checks.fitted_range,
+    flow_checks.following,
     _force,
     _overlay,
     _bands_pass_the_filter,

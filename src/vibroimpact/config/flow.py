@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, ValidationInfo, field_validator
+from pydantic_core import PydanticCustomError
 
+from .mixture import Mixture, given_or_mixed
 from .quantities import (
+    NOT_GIVEN,
     Band_Hz,
     By_kind,
     Direction,
@@ -22,6 +25,7 @@ from .quantities import (
 from .turbulence import Ends, Fluid_density, Velocity
 
 Constant = Annotated[Number, Range("Connors' constant is about 2.4 to 10", above=0, at_most=100)]
+MIXTURE = "Vapour and liquid, whose density is the homogeneous one; null for a density"
 Coefficient = Annotated[Number, Range("a coefficient of the force", at_least=-1e4, at_most=1e4)]
 Positive_number = Annotated[Number, Range("give a positive number", above=0, at_most=1e4)]
 
@@ -34,11 +38,16 @@ class FlowStretch(Ends):
         description="Velocity there over flow.velocity_m_per_s. A profile is cut into stretches.",
         examples=[0.5],
     )
+    mixture: Mixture | None = Field(None, description=f"{MIXTURE} of the flow there.")
     density_kg_per_m3: Fluid_density | None = Field(
         None,
-        description="Density of the fluid outside there; null for flow.density_kg_per_m3.",
+        validate_default=True,
+        description="Density of the fluid outside there; null for that of the mixture, or for"
+        " flow.density_kg_per_m3.",
         examples=[145.7],
     )
+
+    _density = field_validator("density_kg_per_m3")(given_or_mixed)
 
 
 class Connors(Section):
@@ -143,6 +152,29 @@ class NegativeDamping(Section):
 Coupling = Annotated[Lags | QuasiSteady | ConnorsForce | NegativeDamping, By_kind]
 
 
+class DimensionlessTurbulence(Section):
+    """Turbulence with the dimensionless spectrum of `excitation`: at each velocity its frequencies
+    and its level are those of that velocity. A load of the grid is that at the velocity of
+    excitation.spectrum.
+    """
+
+    kind: Literal["dimensionless"] = Field(
+        description="This kind of turbulence.", examples=["dimensionless"]
+    )
+
+
+class PowerTurbulence(Section):
+    """A force whose RMS rises with a power of the velocity, and whose spectrum stays the same."""
+
+    kind: Literal["power"] = Field(description="This kind of turbulence.", examples=["power"])
+    exponent: Annotated[
+        Number, Range("2 for a force like the dynamic pressure", at_least=0, at_most=10), Unit("1")
+    ] = Field(description="Exponent of the velocity.", examples=[2.0])
+    at_m_per_s: Velocity = Field(
+        description="Velocity at which the force has the load of the grid.", examples=[2.0]
+    )
+
+
 class Flow(Section):
     """A flow across the tube, for `vibroimpact stability` and, with acting_m_per_s, for the
     simulation.
@@ -152,9 +184,11 @@ class Flow(Section):
         description="Velocities between the tubes: of an upstream velocity times P / (P - D).",
         examples=[[1.0, 2.0, 3.0]],
     )
-    density_kg_per_m3: Fluid_density = Field(
-        description="Density of the fluid outside; of a mixture the void fraction times that of the"
-        " vapour, plus the rest times that of the liquid.",
+    mixture: Mixture | None = Field(None, description=f"{MIXTURE}.")
+    density_kg_per_m3: Fluid_density | None = Field(
+        None,
+        validate_default=True,
+        description="Density of the fluid outside; null for that of the mixture.",
         examples=[998.0],
     )
     direction: Direction = Field(
@@ -176,9 +210,23 @@ class Flow(Section):
     coupling: Coupling | None = Field(
         None, description="Fluid-elastic force, for eigenvalues against velocity; null for none."
     )
+    turbulence: Annotated[DimensionlessTurbulence | PowerTurbulence, By_kind] | None = Field(
+        None,
+        description="How the force of `excitation` follows the velocity in `vibroimpact stability"
+        " --simulate`; null: it is the same at each.",
+    )
     acting_m_per_s: Velocity | None = Field(
         None,
         description="Velocity at which the fluid-elastic force of `coupling` acts in the"
         " simulation; null: it acts in none.",
         examples=[1.5],
     )
+
+    @field_validator("density_kg_per_m3")
+    @classmethod
+    def _density(cls, value: float | None, info: ValidationInfo) -> float | None:
+        """Return the density given, or that of the mixture."""
+        value = given_or_mixed(value, info)
+        if value is None and "mixture" in info.data:
+            raise PydanticCustomError(NOT_GIVEN, "is missing: give it, or a mixture")
+        return value

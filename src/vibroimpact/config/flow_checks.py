@@ -7,10 +7,11 @@ from typing import Any
 
 from vibroimpact.geometry.sections import outer_width
 
+from .excitation import Excitation
 from .flow import Flow
 from .geometry_checks import Tube
 from .structure import Structure
-from .turbulence_checks import direction_of_flow, stretches_of_flow
+from .turbulence_checks import direction_of_flow, points_of_spectrum, stretches_of_flow
 
 Problems = Iterator[tuple[str, Any, str]]
 
@@ -68,3 +69,28 @@ def fitted_range(flow: Flow) -> Problems:
     own = getattr(flow.coupling, "reduced_velocity", None)
     if own is not None and own[0] >= own[1]:
         yield "flow.coupling.reduced_velocity", list(own), "must ascend: give the lower one first"
+
+
+def following(excitation: Excitation, flow: Flow) -> Problems:
+    """Yield a problem unless turbulence that follows the velocity has a dimensionless spectrum."""
+    if flow.turbulence is None or flow.turbulence.kind != "dimensionless":
+        return
+    if excitation.kind != "turbulence" or not hasattr(excitation.spectrum, "velocity_m_per_s"):
+        yield (
+            "flow.turbulence.kind",
+            "dimensionless",
+            "needs excitation.kind turbulence with a spectrum of a velocity, such as tube_bundle:"
+            " give one, or turbulence of kind power",
+        )
+
+
+def covered(structure: Tube, excitation: Excitation, flow: Flow) -> Problems:
+    """Yield a problem unless a table of reduced frequencies covers the band at each velocity."""
+    spectrum: Any = getattr(excitation, "spectrum", None)
+    if flow.turbulence is None or getattr(spectrum, "kind", "") != "reduced_table":
+        return
+    for velocity in flow.velocity_m_per_s if flow.turbulence.kind == "dimensionless" else ():
+        moved = spectrum.model_copy(update={"velocity_m_per_s": velocity})
+        own = excitation.model_copy(update={"spectrum": moved})
+        for _, _, text in points_of_spectrum(structure, own):
+            yield "flow.velocity_m_per_s", velocity, f"is too far for the spectrum, which {text}"

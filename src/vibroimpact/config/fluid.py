@@ -14,6 +14,7 @@ from pydantic_core import PydanticCustomError
 from vibroimpact.materials.fluids import fluid_properties
 
 from .material import given_or_named, named_or_given, named_temperature
+from .mixture import Mixture, TwoPhaseDamping, given_or_mixed
 from .quantities import (
     By_kind,
     Diameter_m,
@@ -33,6 +34,7 @@ from .quantities import (
 
 Fluid_name = Literal["water", "steam"]
 OR_NAMED = "Null for that of the named fluid."
+MIXTURE = "Vapour and liquid in place of one fluid; null for one."
 NAME = "Name of a fluid at saturation; null for numbers."
 TEMPERATURE = "Temperature of the named fluid; null for 20 °C."
 FROM = (
@@ -95,14 +97,18 @@ class AddedMassCoefficient(Section):
 class FluidInside(Section):
     """A fluid that fills the tube and moves with it in all directions."""
 
-    model_config = named_or_given("density_kg_per_m3")
+    model_config = named_or_given("density_kg_per_m3", instead="mixture")
     kind: Literal["inside"] = Field(description="This kind of fluid.", examples=["inside"])
     name: Fluid_name | None = Field(None, description=NAME, examples=["water"])
     temperature_C: Temperature_C | None = Field(
         None, validate_default=True, description=TEMPERATURE, examples=[20.0]
     )
+    mixture: Mixture | None = Field(None, description=MIXTURE)
     density_kg_per_m3: Fluid_density | None = Field(
-        None, validate_default=True, description=f"Density. {OR_NAMED}", examples=[998.2]
+        None,
+        validate_default=True,
+        description=f"Density. {OR_NAMED[:-1]}, or of the mixture.",
+        examples=[998.2],
     )
     from_m: Position | None = Field(None, description=FROM, examples=[[-0.3, 0.0, 0.0]])
     to_m: Position | None = Field(None, description=TO, examples=[[-0.3, 0.0, 0.5]])
@@ -116,8 +122,10 @@ class FluidInside(Section):
     @field_validator("density_kg_per_m3")
     @classmethod
     def _density(cls, value: float | None, info: ValidationInfo) -> float | None:
-        """Return the density given, or that of the named fluid."""
-        return given_or_named(value, info, fluid_properties)
+        """Return the density given, of the mixture, or of the named fluid."""
+        if "mixture" not in info.data:
+            return value  # it is a problem of its own
+        return given_or_named(given_or_mixed(value, info), info, fluid_properties)
 
 
 class FluidOutside(FluidInside):
@@ -138,6 +146,25 @@ class FluidOutside(FluidInside):
         description=f"Dynamic viscosity, 0 for no damping. {OR_NAMED}",
         examples=[1.0e-3],
     )
+    two_phase_damping: TwoPhaseDamping | None = Field(
+        None, description="Damping by the two phases of the mixture; null for none."
+    )
+
+    @field_validator("two_phase_damping")
+    @classmethod
+    def _two_phase(
+        cls, value: TwoPhaseDamping | None, info: ValidationInfo
+    ) -> TwoPhaseDamping | None:
+        """Return the damping, of a mixture in a confinement with a diameter."""
+        if value is not None and info.data.get("mixture", True) is None:
+            raise PydanticCustomError("unused", "has no effect without mixture: give one")
+        if value is not None and getattr(info.data.get("confinement"), "kind", "") == "coefficient":
+            raise PydanticCustomError(
+                "unused",
+                "has no effect with an added mass coefficient: give an equivalent diameter"
+                " (annulus) for damping",
+            )
+        return value
 
     @field_validator("viscosity_Pa_s")
     @classmethod

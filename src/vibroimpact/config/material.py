@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any, Literal
 
 from pydantic import ConfigDict, Field, ValidationInfo, field_validator
-from pydantic.config import JsonDict
+from pydantic.config import JsonDict, JsonValue
 from pydantic_core import PydanticCustomError
 
 from vibroimpact.materials.solids import solid_properties
@@ -34,10 +34,15 @@ ROOM_TEMPERATURE_C = 20.0
 OR_NAMED = "Null for that of the named metal."
 
 
-def named_or_given(*keys: str) -> ConfigDict:
-    """Return the setting that states in the JSON schema: a name, or all of some keys."""
+def named_or_given(*keys: str, instead: str | None = None) -> ConfigDict:
+    """Return the setting that states in the JSON schema: a name, or all of some keys, or a section
+    that stands `instead` of them.
+    """
     named: JsonDict = {"required": ["name"], "properties": {"name": {"type": "string"}}}
-    return ConfigDict(json_schema_extra={"anyOf": [named, {"required": list(keys)}]})
+    choices: list[JsonValue] = [named, {"required": list(keys)}]
+    if instead is not None:
+        choices.append({"required": [instead], "properties": {instead: {"type": "object"}}})
+    return ConfigDict(json_schema_extra={"anyOf": choices})
 
 
 def named_temperature(value: Any, info: ValidationInfo, properties: Any) -> Any:

@@ -29,8 +29,9 @@ def _sheet(found: FlowSweep, gap: float, number: int) -> Sheet:
         f"Response in a flow with a gap of {1e3 * gap:.3g} mm",
         "Left: RMS of the point that moves most against the velocity of the flow, one colour for"
         " each turbulent load; circles started at rest, open squares with a large motion; medians"
-        " over seeds. Dotted lines: critical velocity of the linear tube with the k and c that each"
-        " load has without flow. Grey lines: that without supports, and with closed ones. Black:"
+        " over seeds. Dashed: the turbulence alone, where it follows the velocity. Dotted lines:"
+        " critical velocity of the linear tube with the k and c that each load has without the"
+        " fluid-elastic force. Grey lines: that without supports, and with closed ones. Black:"
         " limit cycle without turbulence by the describing function, at the support that moves"
         " most. Right: wear work rate of all"
         " supports against velocity over that critical velocity.",
@@ -40,7 +41,12 @@ def _sheet(found: FlowSweep, gap: float, number: int) -> Sheet:
     onsets = [own for own in found.onsets if own.gap_m == gap]
     for onset, colour in zip(onsets, GAP_COLOURS, strict=False):
         for start in MARKERS:
-            _curves(sheet, [run for run in found.runs if _of(run, onset, start)], onset, colour)
+            runs = [run for run in found.runs if _of(run, onset, start)]
+            alone = [run for run in runs if not run.coupled]
+            follows = any(run.velocity_m_per_s > 0.0 for run in alone)
+            _curves(sheet, [own for own in runs if own.coupled or not follows], onset, colour)
+            if follows and start == "small":
+                _alone(sheet, alone, onset, colour)
         _critical(sheet, onset.equivalent_m_per_s, f"equivalent at {onset.load_rms_N:g} N", colour)
     for name in ("open", "closed"):
         _critical(sheet, getattr(onsets[0], f"{name}_m_per_s"), name, GREY)
@@ -76,18 +82,33 @@ def _critical(sheet: Sheet, velocity: float, name: str, colour: str) -> None:
         sheet.mark(axes, column, velocity, name, label=label, **style)
 
 
+def _alone(sheet: Sheet, runs: list[FlowRun], onset: Onset, colour: str) -> None:
+    """Draw the median response to the turbulence alone."""
+    velocities, rms = _median(runs, "rms_m")
+    sheet.line(
+        sheet.axes["response"],
+        ("flow_velocity_m_per_s", velocities),
+        ("response_rms_m", rms),
+        f"{onset.load_rms_N:g} N, turbulence alone",
+        tags={"load_rms_N": onset.load_rms_N, "start": "small"},
+        color=colour,
+        linestyle="--",
+        label=f"{onset.load_rms_N:g} N, turbulence alone",
+    )
+
+
+def _median(runs: list[FlowRun], name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return (velocities, medians over seeds of a field of runs), each (velocity,)."""
+    velocities = np.array(sorted({run.velocity_m_per_s for run in runs}))
+    values = [
+        np.median([getattr(run, name) for run in runs if run.velocity_m_per_s == velocity])
+        for velocity in velocities
+    ]
+    return velocities, np.array(values)
+
+
 def _curves(sheet: Sheet, runs: list[FlowRun], onset: Onset, colour: str) -> None:
     """Draw the median runs of one load and start."""
-    velocities = np.array(sorted({run.velocity_m_per_s for run in runs}))
-
-    def median(name: str) -> np.ndarray:
-        return np.array(
-            [
-                np.median([getattr(run, name) for run in runs if run.velocity_m_per_s == velocity])
-                for velocity in velocities
-            ]
-        )
-
     start, tags = runs[0].start, {"load_rms_N": onset.load_rms_N, "start": runs[0].start}
     small = start == "small"
     style: dict[str, Any] = {
@@ -97,7 +118,7 @@ def _curves(sheet: Sheet, runs: list[FlowRun], onset: Onset, colour: str) -> Non
         "mfc": colour if small else "white",
         "linestyle": "-" if small else "none",
     }
-    rms, work = median("rms_m"), median("wear_work_rate_W")
+    (velocities, rms), (_, work) = _median(runs, "rms_m"), _median(runs, "wear_work_rate_W")
     name = f"{onset.load_rms_N:g} N, {start} start"
     label = f"{onset.load_rms_N:g} N" + ("" if small else ", large start")
     bounded, worn = np.isfinite(rms), work > 0.0

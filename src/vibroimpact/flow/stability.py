@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
 from typing import Any
@@ -124,6 +124,22 @@ def stability(
 
     Raises NoFlow where the configuration has no flow, or no tube.
     """
+    flow, tube = _in_flow(config)
+    return _stability(_Held(flow, tube, stiffness, damping), inactive)
+
+
+def stability_of_states(
+    config: Config, states: Mapping[str, tuple[float | None, float]]
+) -> dict[str, Stability]:
+    """Return {name: Stability} for states {name: (stiffness, damping)} of all supports, as in
+    `stability`, which see.
+    """
+    flow, tube = _in_flow(config)
+    return {name: _stability(_Held(flow, tube, *own), 0) for name, own in states.items()}
+
+
+def _in_flow(config: Config) -> tuple[Flow, TubeInFlow]:
+    """Return (section flow, TubeInFlow). Raises NoFlow."""
     flow = config.flow
     if flow is None or config.structure.kind not in TUBES:
         raise NoFlow(
@@ -131,7 +147,12 @@ def stability(
             if flow is None
             else f"flow: acts along a tube, structure.kind is {config.structure.kind}"
         )
-    held = _Held(flow, tube_in_flow(config, flow), stiffness, damping)
+    return flow, tube_in_flow(config, flow)
+
+
+def _stability(held: _Held, inactive: int) -> Stability:
+    """Return the Stability with so many supports at most that do not hold."""
+    flow = held.flow
     rows = tuple(row for names in held.states(inactive) for row in held.rows(names))
     found = Stability(rows, held.eigenvalues(flow.coupling) if flow.coupling else None)
     worst = [found.worst(velocity, 0) for velocity in flow.velocity_m_per_s]

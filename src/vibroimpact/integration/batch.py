@@ -10,10 +10,10 @@ from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .contact_convergence import LARGEST_DECAY, IntegrationError, checked_contraction
+from .entry_points import entry_points, in_all_lanes, lanes_of
 from .kernel_layout import ModalLayout
-from .kernels.decimation import BEHIND, RATIO, decimate
+from .kernels.decimation import BEHIND, RATIO
 from .kernels.lanes import LANES
-from .kernels.march import initial_forces, march
 from .kernels.tables import Contact, Fluid, Laws, Modal, State, Work
 from .output_filter import OutputFilter, output_filter
 from .run_statistics import LARGEST
@@ -146,7 +146,7 @@ def integrate_batch(
     require_stable_step(model, schedule.steps_per_second, schedule.scheme)
     contraction = checked_contraction(model, schedule.steps_per_second, schedule.scheme)
     return Run(
-        ModalLayout(model, schedule.scheme),
+        ModalLayout(model, schedule.scheme, lanes_of(np.size(gap))),
         schedule,
         gap,
         imperfection,
@@ -211,7 +211,7 @@ def settled(
         return np.zeros((count, channels, np.size(gap)))
 
     run = Run(
-        ModalLayout(damped, schedule.scheme),
+        ModalLayout(damped, schedule.scheme, lanes_of(np.size(gap))),
         schedule,
         gap,
         imperfection,
@@ -222,13 +222,13 @@ def settled(
     time = REST_DECAY / (REST_DAMPING * lowest)
     for ticks in _chunks(round(time * schedule.steps_per_second / RATIO), run.chunk):
         run.advance(ticks, 0, recorded=False)
-    return run.state.q[-1][run.layout.place]
+    return in_all_lanes(run.state.q[-1][run.layout.place])
 
 
-def to_lanes(values: np.ndarray, padding: float) -> np.ndarray:
-    """values (..., case) padded to LANES along the last axis."""
+def to_lanes(values: np.ndarray, padding: float, lanes: int = LANES) -> np.ndarray:
+    """values (..., case) padded to a number of lanes along the last axis."""
     values = np.asarray(values, float)
-    out = np.full((*values.shape[:-1], LANES), padding)
+    out = np.full((*values.shape[:-1], lanes), padding)
     out[..., : values.shape[-1]] = values
     return out
 
@@ -250,10 +250,12 @@ class Run:
         self.model, self.schedule, self.drive = layout.model, schedule, drive
         self.cases, self.contraction = np.size(gap), contraction
         self.dt = 1.0 / schedule.steps_per_second
-        self.layout = layout
+        self.layout, self.lanes = layout, layout.lanes
+        self.kernels = entry_points(self.lanes)
         self.modal = layout.modal(self.dt)
-        lane_gap = to_lanes(gap, 1.0)
-        self.contact = layout.contact(lane_gap, to_lanes(imperfection, 0.0), contraction)
+        lane_gap = to_lanes(gap, 1.0, self.lanes)
+        offset = to_lanes(imperfection, 0.0, self.lanes)
+        self.contact = layout.contact(lane_gap, offset, contraction)
         self.laws = layout.laws(lane_gap)
         self.state, self.tally, self.work = layout.state(), layout.tally(), layout.work()
         self.hold = layout.hold(self.modal)
@@ -331,11 +333,11 @@ class Run:
         sensors = acceleration.shape[1]
         with self.stopwatch("output filter"):
             chunk = np.ascontiguousarray(values[:, : self.history + ticks])
-            buffer = np.zeros((4, LANES))
+            buffer = np.zeros((4, self.lanes))
 
             def filtered(order: int, channels: np.ndarray, out: np.ndarray) -> None:
                 taps = np.pad(stage.taps(order), 3 * stage.step)
-                decimate(channels, taps, out, 0, stage.step, buffer)
+                self.kernels.decimate(channels, taps, out, 0, stage.step, buffer)
 
             filtered(0, chunk, outputs)
             orders = np.array(self.schedule.derivatives or (2,) * sensors)
@@ -375,7 +377,7 @@ class Run:
         force = self.forces(self.done + 1, ticks * RATIO)
         output, trace = self.output._replace(column=column), self.layout.trace(0)
         with self.stopwatch("kernel"):
-            steps = march(
+            steps = self.kernels.march(
                 self.modal,
                 self.contact,
                 self.laws,
@@ -394,12 +396,12 @@ class Run:
         self.account(recorded)
 
     def forces(self, first: int, count: int) -> np.ndarray:
-        """Drive forces (count, force_channel, LANES) N at steps first, first + 1, ..."""
+        """Drive forces (count, force_channel, lane) N at steps first, first + 1, ..."""
         channels, total = self.model.drive_shapes.shape[1], self.layout.drive_shapes.shape[1]
         given = self.drive(first, count)
-        if given.shape == (count, total, LANES):
+        if given.shape == (count, total, self.lanes):
             return np.ascontiguousarray(given)
-        out = np.zeros((count, total, LANES))
+        out = np.zeros((count, total, self.lanes))
         # Long strided copies are many times faster than one copy of blocks of a few lanes.
         for channel in range(channels):
             for lane in range(self.cases):
@@ -477,21 +479,24 @@ def start_state(
 ) -> None:
     """Put the initial displacement, velocity and force into the state.
 
-    drive (force_channel, LANES): force at that time, N.
+    drive (force_channel, lane): force at that time, N.
     initial: (displacement, velocity), modal amplitudes (mode, LANES) each.
     """
-    shapes = layout.row_shapes
+    shapes, own = layout.row_shapes, slice(layout.lanes)
     q, v = initial
     if np.any(q) or np.any(v):
-        state.q[-1] = layout.per_mode(q)
-        state.row_displacement[...], state.row_velocity[...] = shapes @ q, shapes @ v
-        initial_forces(modal, contact, laws, state, work)
+        state.q[-1] = layout.per_mode(q)[:, own]
+        state.row_displacement[...] = (shapes @ q)[:, own]
+        state.row_velocity[...] = (shapes @ v)[:, own]
+        entry_points(layout.lanes).initial_forces(modal, contact, laws, state, work)
     start_fluid(layout, fluid, q, v)
     driven = modal.row_force_channel >= 0
     forces = np.concatenate([drive, fluid.force])
     state.row_force[driven] = forces[modal.row_force_channel[driven]]
-    q_next_free, dq = layout.step(modal.dt).start(q, v, shapes.T @ state.row_force)
-    state.q_next_free[...], state.dq[...] = layout.per_mode(q_next_free), layout.per_mode(dq)
+    modal_force = shapes.T @ in_all_lanes(state.row_force)
+    q_next_free, dq = layout.step(modal.dt).start(q, v, modal_force)
+    state.q_next_free[...] = layout.per_mode(q_next_free)[:, own]
+    state.dq[...] = layout.per_mode(dq)[:, own]
     moves = np.any(state.q_next_free, axis=1) | np.any(state.dq, axis=1)
     state.group_active[...] |= [
         np.any(moves[first:last])
@@ -503,20 +508,20 @@ def start_fluid(layout: ModalLayout, fluid: Fluid, q: np.ndarray, v: np.ndarray)
     """Put the fluid-elastic force at modal amplitudes and rates (mode, LANES) into its table. The
     lags are 0: the flow begins then.
     """
-    shapes = layout.model.fluid_shapes.T
-    fluid.displacement[...] = fluid.free[...] = shapes @ q
-    fluid.memory[...] = shapes @ v
-    fluid.force[...] = -(fluid.stiffness * (shapes @ q) + fluid.damping * (shapes @ v))
+    shapes, own = layout.model.fluid_shapes.T, slice(layout.lanes)
+    fluid.displacement[...] = fluid.free[...] = (shapes @ q)[:, own]
+    fluid.memory[...] = (shapes @ v)[:, own]
+    fluid.force[...] = -(fluid.stiffness * fluid.displacement + fluid.damping * fluid.memory)
 
 
 def modal_energies(layout: ModalLayout, dt: float, state: State) -> tuple[np.ndarray, np.ndarray]:
-    """Kinetic and elastic energy of the modes, each (lane,) J; dt in s."""
-    force = layout.row_shapes.T @ state.row_force
-    velocity = layout.step(dt).velocity(
-        state.q_next_free[layout.place], state.dq[layout.place], force
+    """Kinetic and elastic energy of the modes, each (LANES,) J; dt in s."""
+    q_next_free, dq, displacement = (
+        in_all_lanes(values[layout.place]) for values in (state.q_next_free, state.dq, state.q[-1])
     )
+    force = layout.row_shapes.T @ in_all_lanes(state.row_force)
+    velocity = layout.step(dt).velocity(q_next_free, dq, force)
     kinetic = 0.5 * (velocity**2).sum(axis=0)
-    displacement = state.q[-1][layout.place]
     elastic = 0.5 * ((layout.model.omega[:, None] * displacement) ** 2).sum(axis=0)
     return kinetic, elastic
 

@@ -8,10 +8,9 @@ from vibroimpact.reduction.modal_model import ModalModel
 
 from .batch import Drive, modal_energies, start_amplitudes, start_state, to_lanes
 from .contact_convergence import IntegrationError, checked_contraction
+from .entry_points import entry_points, lanes_of
 from .kernel_layout import ModalLayout
 from .kernels.decimation import RATIO, SLOTS
-from .kernels.lanes import LANES
-from .kernels.march import march
 from .step_stability import require_stable_step
 from .stored_energy import stored_energy
 
@@ -65,13 +64,13 @@ def integrate_every_step(
     require_stable_step(model, steps_per_second, scheme)
     contraction = checked_contraction(model, steps_per_second, scheme)
     cases, ticks = np.size(gap), -(-steps // RATIO)
-    layout = ModalLayout(model, scheme)
-    modal, lanes_gap = layout.modal(1.0 / steps_per_second), to_lanes(gap, 1.0)
-    contact = layout.contact(lanes_gap, to_lanes(imperfection, 0.0), contraction)
+    layout = ModalLayout(model, scheme, lanes_of(cases))
+    modal, lanes_gap = layout.modal(1.0 / steps_per_second), to_lanes(gap, 1.0, layout.lanes)
+    contact = layout.contact(lanes_gap, to_lanes(imperfection, 0.0, layout.lanes), contraction)
     laws = layout.laws(lanes_gap)
     state, tally, work = layout.state(), layout.tally(), layout.work()
     channels = model.drive_shapes.shape[1]
-    force = np.zeros((ticks * RATIO + 1, layout.drive_shapes.shape[1], LANES))
+    force = np.zeros((ticks * RATIO + 1, layout.drive_shapes.shape[1], layout.lanes))
     force[:, :channels, :cases] = drive(0, ticks * RATIO + 1)
     force[:, channels:] = 1.0  # the dead load, see ModalLayout.drive_shapes
     fluid, start = layout.fluid(modal, cases), start_amplitudes(model, rest)
@@ -81,7 +80,7 @@ def integrate_every_step(
     stored_before = stored_energy(contact, laws, state)
     trace = layout.trace(ticks * RATIO)
     output = layout.output(np.zeros((RATIO, SLOTS)), ticks, steps_per_second)
-    done = march(
+    done = entry_points(layout.lanes).march(
         modal,
         contact,
         laws,

@@ -201,31 +201,31 @@ class _LaneLayout(ModalLayout):
     first one, with the numbers of every lane.
     """
 
-    def __init__(self, lanes: list[ModalLayout], strength: np.ndarray, sensors: int):
-        self.__dict__.update(lanes[0].__dict__)
-        self.lanes, self.strength, self.sensors = lanes, strength, sensors
-        self.alike = all(lane is lanes[0] for lane in lanes)
+    def __init__(self, layouts: list[ModalLayout], strength: np.ndarray, sensors: int):
+        self.__dict__.update(layouts[0].__dict__)
+        self.layouts, self.strength, self.sensors = layouts, strength, sensors
+        self.alike = all(lane is layouts[0] for lane in layouts)
 
     def modal(self, dt: float) -> Modal:
         """The kernel's Modal, by lane where the models differ."""
-        return self._stacked([lane.modal(dt) for lane in self.lanes], OWN_COEFFICIENTS)
+        return self._stacked([lane.modal(dt) for lane in self.layouts], OWN_COEFFICIENTS)
 
     def contact(self, gap: np.ndarray, imperfection: np.ndarray, contraction: float) -> Contact:
         """The kernel's Contact, see ModalLayout.contact."""
-        tables = [lane.contact(gap, imperfection, contraction) for lane in self.lanes]
+        tables = [lane.contact(gap, imperfection, contraction) for lane in self.layouts]
         return _own_lanes(tables, OWN_OBSTACLES)
 
     def laws(self, gap: np.ndarray) -> Laws:
         """The kernel's Laws, see ModalLayout.laws."""
-        tables = [lane.laws(gap) for lane in self.lanes]
+        tables = [lane.laws(gap) for lane in self.layouts]
         columns = tables[0]._asdict().items()
         return _own_lanes(tables, [name for name, column in columns if column.ndim == 2])
 
     def output(self, weights: np.ndarray, columns: int, steps_per_second: float) -> Output:
         """The kernel's Output, by lane where the models differ."""
-        tables = [lane.output(weights, columns, steps_per_second) for lane in self.lanes[:1]]
+        tables = [lane.output(weights, columns, steps_per_second) for lane in self.layouts[:1]]
         if not self.alike:
-            tables += [lane.output(weights, 1, steps_per_second) for lane in self.lanes[1:]]
+            tables += [lane.output(weights, 1, steps_per_second) for lane in self.layouts[1:]]
         return self._stacked(tables, ("shapes",))
 
     def hold(self, modal: Modal) -> Hold:
@@ -247,7 +247,7 @@ class _LaneLayout(ModalLayout):
     def _gain(self, modal, rows, lane):
         """Return (sensor, sensor) N s/m: the dampers as the implicit step takes them."""
         compliance = np.zeros((self.sensors, self.sensors))
-        own = self.lanes[lane].modal(modal.dt) if not self.alike else modal
+        own = self.layouts[lane].modal(modal.dt) if not self.alike else modal
         for g in range(modal.row_start.size - 1):
             row0, row1 = modal.row_start[g], modal.row_start[g + 1]
             start, count = modal.compliance_start[g], row1 - row0
@@ -325,7 +325,7 @@ class HeldRun(Run):
                 own = self.layouts[lane]
                 state, amplitudes = own.state(), np.outer(rest, np.ones(LANES))
                 still = np.zeros((own.drive_shapes.shape[1], LANES))
-                fluid = own.fluid(own.modal(self.dt))
+                fluid = own.fluid(own.modal(self.dt), LANES)
                 start_state(
                     *(own, own.modal(self.dt), self.contact, self.laws, fluid),
                     *(state, own.work(), still),

@@ -54,10 +54,11 @@ class ModalLayout:
     force_shapes (mode, channel): drive_shapes, then the rows of the fluid-elastic force.
     padded: number of modes after padding every group to whole panels.
     place (mode,): index of each mode among the padded ones.
+    lanes: see entry_points.
     """
 
-    def __init__(self, model: ModalModel, scheme: str):
-        self.model, self.scheme = model, scheme
+    def __init__(self, model: ModalModel, scheme: str, lanes: int = LANES):
+        self.model, self.scheme, self.lanes = model, scheme, lanes
         self.drive_shapes = model.drive_shapes
         if np.any(model.constant_force):
             self.drive_shapes = np.column_stack([model.drive_shapes, model.constant_force])
@@ -134,9 +135,32 @@ class ModalLayout:
             shape_start=_starts(shapes),
             row_compliance=np.concatenate([*compliance, np.zeros(1)]),
             compliance_start=_starts(compliance),
+            **self._blocks(shapes, compliance),
             velocity_weights=step.velocity_weights,
             **{name: self.per_mode(getattr(step, name)) for name in MODE_COEFFICIENTS},
         )
+
+    def _blocks(
+        self, shapes: list[np.ndarray], compliance: list[np.ndarray]
+    ) -> dict[str, np.ndarray]:
+        """The tables of Modal for one run, from those of every group."""
+        by_mode, by_force = [], []
+        for g, (flat, square) in enumerate(zip(shapes, compliance, strict=True)):
+            width, implicit = np.diff(self.mode_start)[g], len(self.implicit_shapes[g])
+            if self.lanes == 1:
+                blocks = _blocks_of_rows(flat.reshape(-1, width))
+                panels = blocks.reshape(len(blocks), width // PANEL, PANEL, PANEL)
+                by_mode.append(panels.transpose(1, 0, 2, 3).ravel())
+                rows = int(np.sqrt(square.size))
+                on_forces = square.reshape(rows, rows)[:implicit, :implicit]
+                by_force.append(_blocks_of_rows(on_forces).ravel())
+        none = [np.zeros(0)]
+        return {
+            "block_shapes": np.concatenate(by_mode + none),
+            "block_shape_start": _starts(by_mode + none),
+            "block_compliance": np.concatenate(by_force + none),
+            "block_compliance_start": _starts(by_force + none),
+        }
 
     @cache  # noqa: B019 (a layout lives as long as its run)
     def step(self, dt: float) -> StepCoefficients:
@@ -202,7 +226,7 @@ class ModalLayout:
             sets the tolerance at which the iteration ends.
         """
         model, rows = self.model, self.contact_rows()
-        ones, plain = np.ones(LANES), model.contact_laws.plain
+        ones, plain = np.ones(self.lanes), model.contact_laws.plain
         offset = model.centre_offset[:, :, None] + imperfection
         return Contact(
             row_1=rows[:, 0].copy(),
@@ -243,13 +267,13 @@ class ModalLayout:
             contact_point=point,
             land=law_lands(model, round_points)[0],
             flat=np.repeat([0, 1], [len(round_points), len(special.land_point)]).astype(np.int64),
-            normal_1=np.outer(normal[:, 0], np.ones(LANES)),
-            normal_2=np.outer(normal[:, 1], np.ones(LANES)),
+            normal_1=np.outer(normal[:, 0], np.ones(self.lanes)),
+            normal_2=np.outer(normal[:, 1], np.ones(self.lanes)),
             lobes=special.lobes[point].astype(np.int64),
             gap=np.ascontiguousarray(self.gaps(gap)[point]),
             element_row=self.element_rows(),
             partner_row=self.partner_rows(),
-            **{name: np.outer(values, np.ones(LANES)) for name, values in columns.items()},
+            **{name: np.outer(values, np.ones(self.lanes)) for name, values in columns.items()},
         )
 
     def _round_points(self) -> list[int]:
@@ -261,15 +285,16 @@ class ModalLayout:
     def trace(self, steps: int) -> Trace:
         """Room for a number of steps of every row, none for 0."""
         rows, _ = self._rows_and_supports()
-        return Trace(_aligned((rows, steps, LANES)), _aligned((rows, steps, LANES)), int(steps))
+        shape = rows, steps, self.lanes
+        return Trace(_aligned(shape), _aligned(shape), int(steps))
 
     def hold(self, modal: Modal) -> Hold:
         """The kernel's Hold: no sensor is held."""
         none = np.zeros(0, np.int64)
-        empty = [np.zeros((0, LANES)) for _ in range(4)]
-        return Hold(none, np.zeros(1, np.int64), none, np.zeros((0, 0, LANES)), *empty)
+        empty = [np.zeros((0, self.lanes)) for _ in range(4)]
+        return Hold(none, np.zeros(1, np.int64), none, np.zeros((0, 0, self.lanes)), *empty)
 
-    def fluid(self, modal: Modal, cases: int = LANES, laws: Sequence[FluidLaws] = ()) -> Fluid:
+    def fluid(self, modal: Modal, cases: int, laws: Sequence[FluidLaws] = ()) -> Fluid:
         """The kernel's Fluid of the first lanes; in the others, without stops near, it would grow.
 
         laws: those of each case, none for the model's in all.
@@ -281,7 +306,7 @@ class ModalLayout:
 
         def stacked(name: str) -> np.ndarray:
             values = np.stack([getattr(lane, name).reshape(-1) for lane in lanes], axis=-1)
-            return np.pad(values, ((0, 0), (0, LANES - len(lanes))))
+            return np.pad(values, ((0, 0), (0, self.lanes - len(lanes))))
 
         turn = np.maximum(stacked("lag_rate") * modal.dt, 1.0e-300)
         moving = ("force", "displacement", "free", "memory")
@@ -291,9 +316,9 @@ class ModalLayout:
             lag_start=lags * np.arange(rows + 1, dtype=np.int64),
             decay=np.exp(-turn),
             gain=-np.expm1(-turn) / turn,
-            lag=_aligned((rows * lags, LANES)),
+            lag=_aligned((rows * lags, self.lanes)),
             **{name: stacked(name) for name in ("stiffness", "damping", "lag_stiffness")},
-            **{name: _aligned((rows, LANES)) for name in moving},
+            **{name: _aligned((rows, self.lanes)) for name in moving},
         )
 
     def state(self) -> State:
@@ -302,21 +327,21 @@ class ModalLayout:
         laws, elements = self._laws_and_elements()
         other_channels = 2 * supports + self.drive_shapes.shape[1]
         return State(
-            q=_aligned((RATIO, self.padded, LANES)),
-            q_next_free=_aligned((self.padded, LANES)),
-            dq=_aligned((self.padded, LANES)),
+            q=_aligned((RATIO, self.padded, self.lanes)),
+            q_next_free=_aligned((self.padded, self.lanes)),
+            dq=_aligned((self.padded, self.lanes)),
             group_active=np.array([len(driven) > 0 for _, driven in self.groups], np.int64),
-            row_displacement=_aligned((rows, LANES)),
-            row_displacement_before=_aligned((rows, LANES)),
-            row_velocity=_aligned((rows, LANES)),
-            row_force=_aligned((rows, LANES)),
-            row_force_before=_aligned((rows, LANES)),
-            row_deflection=_aligned((rows, LANES)),
-            row_deflection_before=_aligned((rows, LANES)),
-            friction_force=_aligned((laws, LANES)),
-            slider_force=_aligned((elements, LANES)),
-            touching=_aligned((supports, LANES)),
-            filter_sums=_aligned((SLOTS, self.padded + other_channels, LANES)),
+            row_displacement=_aligned((rows, self.lanes)),
+            row_displacement_before=_aligned((rows, self.lanes)),
+            row_velocity=_aligned((rows, self.lanes)),
+            row_force=_aligned((rows, self.lanes)),
+            row_force_before=_aligned((rows, self.lanes)),
+            row_deflection=_aligned((rows, self.lanes)),
+            row_deflection_before=_aligned((rows, self.lanes)),
+            friction_force=_aligned((laws, self.lanes)),
+            slider_force=_aligned((elements, self.lanes)),
+            touching=_aligned((supports, self.lanes)),
+            filter_sums=_aligned((SLOTS, self.padded + other_channels, self.lanes)),
             counter=np.array([QUIET, 0], np.int64),
         )
 
@@ -345,7 +370,7 @@ class ModalLayout:
             "peak_square_stress": sections,
         }
         return Tally(
-            **{name: _aligned((counts.get(name, supports), LANES)) for name in Tally._fields}
+            **{name: _aligned((counts.get(name, supports), self.lanes)) for name in Tally._fields}
         )
 
     def work(self) -> Work:
@@ -360,7 +385,9 @@ class ModalLayout:
             "slider_force": elements,
             "frozen_slider_force": elements,
         }
-        return Work(**{name: _aligned((counts.get(name, rows), LANES)) for name in Work._fields})
+        return Work(
+            **{name: _aligned((counts.get(name, rows), self.lanes)) for name in Work._fields}
+        )
 
     def output(self, weights: np.ndarray, columns: int, steps_per_second: float) -> Output:
         """Output buffers: displacement channels are the sensors, then the shape line; then the
@@ -399,7 +426,7 @@ class ModalLayout:
             stress_start=int(stress_start),
             stress_weight=stress_weight(steps_per_second),
             supports=supports,
-            values=_aligned((stress_start + other_channels, columns, LANES)),
+            values=_aligned((stress_start + other_channels, columns, self.lanes)),
             columns=int(columns),
             column=0,
         )
@@ -475,6 +502,12 @@ def _whole_blocks(channels: np.ndarray, filler: int) -> list[int]:
     return [int(channel) for channel in channels] + [filler] * (-len(channels) % CHANNEL_BLOCK)
 
 
+def _blocks_of_rows(values: np.ndarray) -> np.ndarray:
+    """values (row, column) as (block, column, PANEL rows), padded with zeros."""
+    padded = np.pad(values, ((0, -len(values) % PANEL), (0, 0)))
+    return padded.reshape(len(padded) // PANEL, PANEL, values.shape[1]).transpose(0, 2, 1)
+
+
 def _starts(parts: Sequence[np.ndarray]) -> np.ndarray:
     """Index of the first value of each part when they are put end to end."""
     return np.concatenate([[0], np.cumsum([part.size for part in parts])[:-1]]).astype(np.int64)
@@ -486,8 +519,10 @@ def _inverse(values: np.ndarray) -> np.ndarray:
 
 
 def _aligned(shape: tuple[int, ...]) -> np.ndarray:
-    """Zeros that start on a cache line, so that no vector straddles two."""
+    """Zeros that start on a cache line, so that no vector straddles two; room behind them for a
+    block of rows.
+    """
     count = int(np.prod(shape))
-    raw = np.zeros(count + 8)
+    raw = np.zeros(count + 8 + PANEL)
     first = (-raw.ctypes.data // 8) % 8
     return raw[first : first + count].reshape(shape)

@@ -13,10 +13,10 @@ from vibroimpact.reduction.modal_model import ModalModel
 
 from .batch import start_state, to_lanes
 from .contact_convergence import IntegrationError, checked_contraction
+from .entry_points import entry_points
 from .kernel_layout import ModalLayout
 from .kernels.decimation import RATIO, SLOTS
 from .kernels.lanes import LANES
-from .kernels.march import march
 from .kernels.tables import STEPS_DONE
 
 SCHEME = "exact"
@@ -108,14 +108,14 @@ def steady_series(
     initial = _linear_steady_state(model, drive)
     state.slider_force[...] = _slider_force(model, initial[0])
     force = _with_dead_load(samples, layout)
-    fluid = layout.fluid(modal)
+    fluid = layout.fluid(modal, LANES)
     start_state(layout, modal, contact, laws, fluid, state, work, force[0], initial)
     force = np.ascontiguousarray(np.roll(force, -1, axis=0))
     output = layout.output(np.zeros((RATIO, SLOTS)), drive.steps // RATIO, rate)
     for period in range(periods_before + 1):
         trace = layout.trace(drive.steps if period == periods_before else 0)
         state.counter[STEPS_DONE] = 0  # the trace starts at step 0
-        done = march(
+        done = entry_points(LANES).march(
             modal,
             contact,
             laws,

@@ -201,7 +201,7 @@ def _damping_and_element_fields(
     damper_shapes = np.zeros((len(omega), 0))
     coefficients: list[float] = []
     if config.structure.kind in TUBES:
-        damping = damping + structure.viscous_damping(omega, shapes)
+        damping = damping + structure.fluid_damping(omega, shapes)
     else:
         diagonal, damper_shapes, added = split_damping(shapes.T @ structure.damping @ shapes)
         # Measured modes bring their damping with them.

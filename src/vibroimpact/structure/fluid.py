@@ -1,8 +1,8 @@
 """Still fluids inside and outside a tube: added mass per length, and viscous damping.
 
 A fluid inside fills the hollow of the section and moves with it in all directions. A fluid outside
-adds mass to motion across the tube only. Two-phase flow and the coupling of neighbouring tubes are
-left out.
+adds mass to motion across the tube only. A mixture of vapour and liquid is one fluid of its mean
+density. The coupling of neighbouring tubes is left out.
 
 Sources:
 - added mass and viscous damping in a confined still fluid: R. J. Rogers, C. Taylor and M. J.
@@ -38,6 +38,7 @@ class FluidStretch:
     displaced: mass per length in kg/m of the fluid that the tube displaces.
     viscous: damping coefficient per length in N s/m² at 1 Hz; it grows with the square root of the
         frequency.
+    two_phase: the same of two phases, which grows with the frequency.
     """
 
     begin: float
@@ -46,6 +47,7 @@ class FluidStretch:
     outside: tuple[float, float] = (0.0, 0.0)
     displaced: float = 0.0
     viscous: float = 0.0
+    two_phase: float = 0.0
 
 
 def fluid_stretches(structure: ConfigPart, line: Centreline) -> list[FluidStretch]:
@@ -72,6 +74,7 @@ def fluid_stretches(structure: ConfigPart, line: Centreline) -> list[FluidStretc
                 outside=(first * displaced, second * displaced),
                 displaced=displaced,
                 viscous=_viscous_coefficient(fluid, structure.section),
+                two_phase=_two_phase_coefficient(fluid, structure.section),
             )
         )
     return stretches
@@ -126,10 +129,32 @@ def viscous_damping_ratio(
     confinement: De/D.
     """
     density, viscosity = fluid
-    factor = (1.0 + confinement**-3.0) / (1.0 - confinement**-2.0) ** 2
+    factor = confinement_factor(confinement)
     boundary_layer = np.sqrt(2.0 * viscosity / (np.pi * frequency * diameter**2))
     mass_ratio = density * diameter**2 / mass_per_length
     return np.pi / np.sqrt(8.0) * mass_ratio * boundary_layer * factor
+
+
+def confinement_factor(confinement: float) -> float:
+    """Return (1 + (D/De)³) / (1 - (D/De)²)² of De/D.
+
+    Source: Rogers, Taylor and Pettigrew (1984).
+    """
+    return (1.0 + confinement**-3.0) / (1.0 - confinement**-2.0) ** 2
+
+
+def _two_phase_coefficient(fluid: ConfigPart, section: ConfigPart) -> float:
+    """Return the damping coefficient per length in N s/m² of two phases outside, at 1 Hz.
+
+    It is 2 zeta omega m with the ratio of config.mixture.TwoPhaseDamping, which has m below it.
+    """
+    mixture, damping = fluid.mixture, fluid.two_phase_damping
+    if mixture is None or damping is None:
+        return 0.0
+    displaced = mixture.liquid_density_kg_per_m3 * outer_width(section) ** 2
+    factor = confinement_factor(equivalent_diameter_ratio(fluid.confinement, section))
+    share = damping.share(mixture.void_fraction)
+    return float(4.0 * np.pi * damping.coefficient * displaced * factor * share)
 
 
 def _viscous_coefficient(fluid: ConfigPart, section: ConfigPart) -> float:

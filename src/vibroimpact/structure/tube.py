@@ -43,6 +43,7 @@ class TubeStructure:
         its added mass, and the mass of fluid that the tube displaces.
     viscous: (dof, dof) sparse, N s/m, damping by the fluid outside at 1 Hz; it grows with the
         square root of the frequency.
+    two_phase: the same by two phases outside, which grows with the frequency.
     rows: {arc length: displacement rows} computed so far.
     """
 
@@ -59,6 +60,7 @@ class TubeStructure:
     inertia: np.ndarray
     carried_inertia: np.ndarray
     viscous: sparse.csr_array
+    two_phase: sparse.csr_array
     rows: dict = field(default_factory=dict, repr=False)
 
     @property
@@ -126,13 +128,16 @@ class TubeStructure:
         first = self.centreline.carried(self.first_axis, arc_length)
         return np.array([first, unit_vector(np.cross(tangent, first))])
 
-    def viscous_damping(self, omega: np.ndarray, shapes: np.ndarray) -> np.ndarray:
+    def fluid_damping(self, omega: np.ndarray, shapes: np.ndarray) -> np.ndarray:
         """Return (mode,) 2 zeta omega in 1/s by the fluid outside, each mode at its own frequency.
 
         omega: (mode,) rad/s. shapes: (dof, mode), mass-orthonormal.
         """
-        at_one_hertz = np.sum(shapes * (self.viscous @ shapes), axis=0)
-        return np.sqrt(omega / (2.0 * np.pi)) * at_one_hertz
+        viscous, two_phase = (
+            np.sum(shapes * (matrix @ shapes), axis=0) for matrix in (self.viscous, self.two_phase)
+        )
+        frequency = omega / (2.0 * np.pi)
+        return np.sqrt(frequency) * viscous + frequency * two_phase
 
     def _element_at(self, arc_length: float) -> tuple[int, float]:
         """Return (element, xi) at an arc length in m; xi from 0 to 1, snapped to a near node."""
@@ -221,7 +226,7 @@ def _built(
     stiffness, mass = (_assembled(matrices) for matrices in zip(*elements, strict=True))
     transformation, springs = _end_conditions(structure, line, len(nodes))
     rigid = np.tile(np.eye(3, DOF_PER_NODE), len(nodes))
-    carried, viscous = _fluid_matrices(beam, stretches, middles, (lengths, axes))
+    carried, viscous, two_phase = _fluid_matrices(beam, stretches, middles, (lengths, axes))
     return TubeStructure(
         centreline=line,
         beam=beam,
@@ -236,6 +241,7 @@ def _built(
         mass=(transformation.T @ mass @ transformation).tocsr(),
         stiffness=(transformation.T @ (stiffness + springs) @ transformation).tocsr(),
         viscous=(transformation.T @ viscous @ transformation).tocsr(),
+        two_phase=(transformation.T @ two_phase @ transformation).tocsr(),
     )
 
 
@@ -271,25 +277,26 @@ def _fluid_matrices(
     stretches: Sequence[FluidStretch],
     middles: np.ndarray,
     frames: tuple[np.ndarray, np.ndarray],
-) -> tuple[sparse.csr_array, sparse.csr_array]:
-    """Return (carried, viscous), each (node dof, node dof): the masses in kg that a fluid outside
-    takes off if it moves with the ends, and its damping in N s/m at 1 Hz. Both act across the
-    tube only.
+) -> list[sparse.csr_array]:
+    """Return [carried, viscous, two_phase], each (node dof, node dof): the masses in kg that a
+    fluid outside takes off if it moves with the ends, and its dampings in N s/m at 1 Hz. All act
+    across the tube only.
     """
     size = DOF_PER_NODE * (len(middles) + 1)
-    carried, viscous = np.zeros((len(middles), 2)), np.zeros((len(middles), 2))
+    carried, viscous, two_phase = (np.zeros((len(middles), 2)) for _ in range(3))
     for each in stretches:
         inside = (each.begin <= middles) & (middles <= each.end)
         carried[inside] += np.array(each.outside) + each.displaced
         viscous[inside] += each.viscous
-    if not carried.any():
-        return sparse.csr_array((size, size)), sparse.csr_array((size, size))
+        two_phase[inside] += each.two_phase
 
     def matrix(per_length: np.ndarray) -> sparse.csr_array:
+        if not per_length.any():
+            return sparse.csr_array((size, size))
         beams = [transverse_only(beam, values) for values in per_length]
         return _assembled([element_matrices(*each)[1] for each in zip(beams, *frames, strict=True)])
 
-    return matrix(carried), matrix(viscous)
+    return [matrix(values) for values in (carried, viscous, two_phase)]
 
 
 def _assembled(matrices: Sequence[np.ndarray]) -> sparse.csr_array:

@@ -1,9 +1,9 @@
 """A tube with gaps in flows of rising velocity, and the linear tubes that stand for it.
 
 Each run has one turbulent load and one velocity. It starts at rest, or with a motion of several
-gaps: where the two differ, the tube has two ways to vibrate. The runs without flow give k and c of
-each support at that load; with them the eigenvalues have the critical velocity that the equivalent
-linear tube predicts.
+gaps: where the two differ, the tube has two ways to vibrate. Runs under the turbulence alone give k
+and c of each support; with them the eigenvalues have the critical velocity that the equivalent
+linear tube predicts. Where the turbulence follows the velocity there is such a run at each.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ from vibroimpact.integration.batch import BatchResult, Schedule, integrate_batch
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.integration.preload import seated
-from vibroimpact.io.stopwatch import Stopwatch
 
 from .cases import Case, load_values
+from .flow_turbulence import at_velocity, drive_of_lanes
 from .in_process import reduced_model
-from .simulation import drive_of, imperfection, record_dataset, seed_forces
+from .simulation import imperfection, record_dataset, seed_forces
 
 STARTS = {"small": 0.0, "large": 3.0}  # gaps that the lowest mode would reach without stops
 ONSET = 1.25  # times the response without flow: beyond the scatter of a record, 7 to 14 %
@@ -43,8 +43,10 @@ SEARCHED = 3.0  # times the highest velocity, up to which critical velocities ar
 class FlowRun:
     """One run, in SI units; an infinite response if it grew without bound.
 
-    start: small or large. rms: of the point of the shape line that moves most. contact_fraction: of
-    the support that is touched most. wear_work_rate: of all supports. fluid_power: from the flow.
+    load: of the grid. start: small or large. rms: of the point of the shape line that moves most.
+    contact_fraction: of the support that is touched most. wear_work_rate: of all supports.
+    fluid_power: from the flow. force_rms: of the turbulence. coupled: whether the fluid-elastic
+    force acts.
     """
 
     load_rms_N: float
@@ -56,15 +58,34 @@ class FlowRun:
     contact_fraction: float
     wear_work_rate_W: float
     fluid_power_W: float
+    force_rms_N: float
+    coupled: bool
+
+
+@dataclass(frozen=True)
+class Equivalent:
+    """The linear tube of the turbulence at a velocity, 0 where it is the same at all.
+
+    k, c: of a support under the turbulence alone, the mean over the supports. critical: velocity
+    with k and c of each; NaN where there is none.
+    """
+
+    load_rms_N: float
+    gap_m: float
+    velocity_m_per_s: float
+    force_rms_N: float
+    k_N_per_m: float
+    c_N_s_per_m: float
+    critical_m_per_s: float
 
 
 @dataclass(frozen=True)
 class Onset:
     """Velocities in m/s at one load and gap, NaN if there is none in the range.
 
-    k, c: of a support without flow, the mean over the supports. open, equivalent, closed: critical
-    velocities of the linear tube with no supports, with k and c of each, and with contact
-    stiffnesses. small, large: at which the runs that start so leave the response without flow.
+    k, c: of the Equivalent, at its critical velocity. open, equivalent, closed: critical velocities
+    of the linear tube with no supports, with k and c, and with contact stiffnesses. small, large:
+    at which the runs that start so leave the response to the turbulence alone.
     """
 
     load_rms_N: float
@@ -93,6 +114,7 @@ class FlowSweep:
 
     runs: tuple[FlowRun, ...]
     onsets: tuple[Onset, ...]
+    equivalents: tuple[Equivalent, ...]
     cycles: tuple[Cycle, ...]
 
     def tables(self) -> dict[str, list[dict[str, Any]]]:
@@ -100,6 +122,7 @@ class FlowSweep:
         return {
             "flow_runs": [asdict(run) for run in self.runs],
             "flow_onset": [asdict(onset) for onset in self.onsets],
+            "flow_equivalent": [asdict(own) for own in self.equivalents],
             "flow_cycles": [asdict(cycle) for cycle in self.cycles],
         }
 
@@ -120,7 +143,9 @@ def flow_sweep(config: Config) -> FlowSweep:
     model, structure = reduced_model(config), cast(Any, config.structure)
     force = fluid_force(flow.coupling, outer_width(structure.section))
     tube = ModelInFlow(model, force, highest, SEARCHED * highest)
-    runs, onsets = [], []
+    runs: list[FlowRun] = []
+    onsets: list[Onset] = []
+    equivalents: list[Equivalent] = []
     for load, gap in product(load_values(config.grid), config.grid.gap_m):
         batches = [
             own
@@ -128,17 +153,20 @@ def flow_sweep(config: Config) -> FlowSweep:
             for start in STARTS
             for own in _runs(config, tube, Case(load, gap, seed), start)
         ]
-        runs += [run for run, _ in batches]
-        still = [record for run, record in batches if run.velocity_m_per_s == 0.0]
-        onsets.append(_onset(tube, [run for run, _ in batches], still))
+        own_runs = [run for run, _ in batches]
+        tubes = _equivalents(tube, [pair for pair in batches if not pair[0].coupled])
+        runs, equivalents = runs + own_runs, equivalents + tubes
+        onsets.append(_onset(tube, own_runs, tubes))
     cycles = tuple(own for gap in config.grid.gap_m for own in _cycles(tube, gap))
-    return FlowSweep(tuple(runs), tuple(onsets), cycles)
+    return FlowSweep(tuple(runs), tuple(onsets), tuple(equivalents), cycles)
 
 
 def _runs(
     config: Config, tube: ModelInFlow, case: Case, start: str
 ) -> Iterator[tuple[FlowRun, xr.Dataset]]:
-    """Yield (FlowRun, record) of one load, gap, seed and start at each velocity, 0 first."""
+    """Yield (FlowRun, record) of one load, gap, seed and start at each velocity; the turbulence
+    alone first.
+    """
     model, step = tube.model, config.integration
     schedule = Schedule(
         step.steps_per_second,
@@ -147,28 +175,42 @@ def _runs(
         config.record.duration_s,
         step.scheme,
     )
-    forces = {case.seed: seed_forces(config, schedule, case.seed, model.drive_shapes.shape[1])}
-    velocities = [0.0, *sorted(cast(Any, config.flow).velocity_m_per_s)]
+    channels = model.drive_shapes.shape[1]
+    forces, lanes = {}, _lanes(config)
+    grid = seed_forces(config, schedule, case.seed, channels)
+    for velocity in {lane[0] for lane in lanes}:
+        own, share = at_velocity(config, velocity)
+        streams = grid if own is config else seed_forces(own, schedule, case.seed, channels)
+        forces[velocity] = streams, share * case.load_rms_N
     moving = replace(model, initial_velocity=_push(model, STARTS[start] * case.gap_m))
-    for first in range(0, len(velocities), LANES):
-        batch = velocities[first : first + LANES]
-        cases = [case] * len(batch)
+    for first in range(0, len(lanes), LANES):
+        batch = lanes[first : first + LANES]
         offset = np.stack([imperfection(config, model, case)] * len(batch), axis=-1)
         gaps = np.full(len(batch), case.gap_m)
         offset, rest = seated(model, schedule, gaps, offset)
-        drive = drive_of(cases, forces, Stopwatch())
-
+        drive = drive_of_lanes([forces[velocity] for velocity, _ in batch])
         line = _LineSquares(model.sensor_shapes.shape[1])
 
         def integrate(laws, gaps=gaps, offset=offset, drive=drive, rest=rest, line=line):
             line.restart()
             return integrate_batch(moving, schedule, gaps, offset, drive, line.add, rest, laws)
 
-        lanes, grown = _bounded(integrate, _laws(tube, batch))
-        for lane, velocity in enumerate(batch):
-            record = record_dataset(config, model, schedule, lanes, lane, case)
+        result, grown = _bounded(integrate, _laws(tube, batch))
+        for lane, (velocity, coupled) in enumerate(batch):
+            own_case = replace(case, load_rms_N=forces[velocity][1])
+            record = record_dataset(config, model, schedule, result, lane, own_case)
             rms = np.inf if lane in grown else line.rms(lane)
-            yield _run(case, (velocity, start), record, rms), record
+            found = _run(case, (velocity, start), record, rms)
+            force_rms = own_case.load_rms_N
+            yield replace(found, force_rms_N=force_rms, coupled=coupled), record
+
+
+def _lanes(config: Config) -> list[tuple[float, bool]]:
+    """Return (velocity in m/s, whether the fluid-elastic force acts) of the runs."""
+    flow = cast(Any, config.flow)
+    velocities = sorted(flow.velocity_m_per_s)
+    alone = [0.0] if flow.turbulence is None else velocities
+    return [(own, False) for own in alone] + [(own, True) for own in velocities]
 
 
 class _LineSquares:
@@ -209,10 +251,10 @@ def _bounded(integrate: Any, laws: list[FluidLaws]) -> tuple[BatchResult, set[in
             laws = [*laws[: error.case], FluidLaws(**still), *laws[error.case + 1 :]]
 
 
-def _laws(tube: ModelInFlow, velocities: Sequence[float]) -> list[FluidLaws]:
-    """Return the FluidLaws of the rows at each velocity of the flow in m/s."""
+def _laws(tube: ModelInFlow, lanes: Sequence[tuple[float, bool]]) -> list[FluidLaws]:
+    """Return the FluidLaws of the rows of each run of _lanes."""
     share = tube.model.fluid_laws.velocity / tube.acting
-    return [tube.force.laws(share * velocity) for velocity in velocities]
+    return [tube.force.laws(share * velocity * coupled) for velocity, coupled in lanes]
 
 
 def _push(model: Any, amplitude: float) -> np.ndarray:
@@ -236,40 +278,92 @@ def _run(case: Case, at: tuple[float, str], record: xr.Dataset, rms: float) -> F
         float(record["contact_fraction"].max()) if bounded else np.nan,
         float(record["wear_work_rate"].sum()) if bounded else np.nan,
         float(record["fluid_power"]) if bounded else np.nan,
+        case.load_rms_N,
+        False,
     )
 
 
-def _onset(tube: ModelInFlow, runs: list[FlowRun], still: list[xr.Dataset]) -> Onset:
-    """Return the Onset of the runs at one load and gap; still: the records without flow."""
-    supports = tube.supports
-    found = [[secant_support(record, tube.model, own) for own in supports] for record in still]
-    k = np.nanmean([[own.k for own in row] for row in found], axis=0)
-    c = np.nanmean([[own.c for own in row] for row in found], axis=0)
-    none = np.zeros(len(supports))
-    critical = [tube.critical(*pair)[0] for pair in ((none, none), (k, c), (tube.held, none))]
+def _equivalents(
+    tube: ModelInFlow, alone: Sequence[tuple[FlowRun, xr.Dataset]]
+) -> list[Equivalent]:
+    """Return the Equivalent of each velocity; alone: runs under the turbulence alone."""
+    made = []
+    for velocity in sorted({run.velocity_m_per_s for run, _ in alone}):
+        here = [pair for pair in alone if pair[0].velocity_m_per_s == velocity]
+        found = [
+            [secant_support(each, tube.model, own) for own in tube.supports] for _, each in here
+        ]
+        k = np.nanmean([[own.k for own in row] for row in found], axis=0)
+        c = np.nanmean([[own.c for own in row] for row in found], axis=0)
+        first = here[0][0]
+        place = first.load_rms_N, first.gap_m, velocity, first.force_rms_N
+        made.append(Equivalent(*place, float(k.mean()), float(c.mean()), tube.critical(k, c)[0]))
+    return made
+
+
+def _onset(tube: ModelInFlow, runs: list[FlowRun], tubes: list[Equivalent]) -> Onset:
+    """Return the Onset of the runs at one load and gap."""
+    none = np.zeros(len(tube.supports))
+    still, closed = tube.critical(none, none)[0], tube.critical(tube.held, none)[0]
     starts = [onset_of([run for run in runs if run.start == start]) for start in STARTS]
-    first = runs[0]
-    means = float(k.mean()), float(c.mean())
-    return Onset(first.load_rms_N, first.gap_m, *means, *critical, *starts)
+    equivalent = equivalent_onset(tubes)
+    velocities = [own.velocity_m_per_s for own in tubes]
+    at = velocities[-1] if np.isnan(equivalent) else equivalent
+    k = float(np.interp(at, velocities, [own.k_N_per_m for own in tubes]))
+    c = float(np.interp(at, velocities, [own.c_N_s_per_m for own in tubes]))
+    return Onset(tubes[0].load_rms_N, tubes[0].gap_m, k, c, still, equivalent, closed, *starts)
+
+
+def equivalent_onset(tubes: Sequence[Equivalent]) -> float:
+    """Return the velocity in m/s that is critical for the k and c of the turbulence at it,
+    interpolated; NaN where the range has none.
+    """
+    if len(tubes) == 1:
+        return tubes[0].critical_m_per_s
+    velocities, critical = (
+        np.array([getattr(own, name) for own in tubes])
+        for name in ("velocity_m_per_s", "critical_m_per_s")
+    )
+    unstable = np.flatnonzero(critical <= velocities)
+    if not unstable.size:
+        return float("nan")
+    last = int(unstable[0])
+    if last == 0:
+        return float(critical[0])
+    if not np.isfinite(critical[last - 1]):
+        return float(velocities[last])
+    pair = slice(last - 1, last + 1)  # a constant V_c is met exactly
+    excess = np.log(velocities / critical)[pair]
+    return float(np.exp(np.interp(0.0, excess, np.log(velocities[pair]))))
 
 
 def onset_of(runs: Sequence[FlowRun]) -> float:
-    """Return the velocity in m/s at which the response is ONSET times that without flow: the median
-    over seeds, interpolated; NaN if it never is.
+    """Return the velocity in m/s at which the response is ONSET times that to the turbulence alone:
+    the median over seeds, interpolated; NaN where it never is.
     """
-    velocities = sorted({run.velocity_m_per_s for run in runs})
-    median = np.array(
-        [np.median([run.rms_m for run in runs if run.velocity_m_per_s == v]) for v in velocities]
-    )
-    over = np.flatnonzero(median > ONSET * median[0])
+
+    def median(coupled: bool) -> dict[float, float]:
+        own = [run for run in runs if run.coupled == coupled]
+        velocities = sorted({run.velocity_m_per_s for run in own})
+        return {
+            velocity: float(
+                np.median([run.rms_m for run in own if run.velocity_m_per_s == velocity])
+            )
+            for velocity in velocities
+        }
+
+    alone, moved = median(False), median(True)
+    velocities = np.array([0.0, *moved])
+    follows = 0.0 not in alone
+    ratio = np.array([1.0, *(rms / alone[own * follows] for own, rms in moved.items())])
+    over = np.flatnonzero(ratio > ONSET)
     if not over.size:
         return float("nan")
     last = over[0]
-    if not np.isfinite(median[last]):
+    if not np.isfinite(ratio[last]):
         return float(velocities[last])
-    levels = np.log(median[last - 1 : last + 1])
-    wanted = np.log(ONSET * median[0])
-    return float(np.interp(wanted, levels, velocities[last - 1 : last + 1]))
+    levels = np.log(ratio[last - 1 : last + 1])
+    return float(np.interp(np.log(ONSET), levels, velocities[last - 1 : last + 1]))
 
 
 def _cycles(tube: ModelInFlow, gap: float) -> Iterator[Cycle]:

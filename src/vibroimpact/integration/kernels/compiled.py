@@ -24,9 +24,19 @@ config: Any = numba_config  # its settings are made at run time
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 SOURCES = Path(__file__).parent
+PACKAGE = __name__.split(".")[-2]  # see lanes.LANES
 # Without numba's reference counts: counting each array of a table at each use costs five times the
 # arithmetic. No compiled function allocates; work space is handed in.
 WITHOUT_REFERENCE_COUNTS: dict[str, Any] = {"_nrt": False}
+# A function that only other compiled functions call needs no door for Python or C, whose code to
+# unpack the tables takes longer to compile than the function.
+ENTRY: dict[str, Any] = {**WITHOUT_REFERENCE_COUNTS, "nogil": True, "no_cfunc_wrapper": True}
+INLINED: dict[str, Any] = {
+    **WITHOUT_REFERENCE_COUNTS,
+    "forceinline": True,
+    "no_cpython_wrapper": True,
+    "no_cfunc_wrapper": True,
+}
 DIGEST_BYTES = hashlib.sha256().digest_size
 # Said once, where every process has to compile.
 NO_CACHE = (
@@ -34,7 +44,7 @@ NO_CACHE = (
     " set NUMBA_CACHE_DIR to a folder that can be written"
 )
 COMPILING = (
-    "vibroimpact: the kernels are compiled, once for this machine: half a minute, two on a slow one"
+    "vibroimpact: the kernels are compiled, once for this machine: 15 s, or a minute on a slow one"
 )
 _said: set[str] = set()
 
@@ -53,7 +63,7 @@ IMPORTED_SOURCES = source_digest()
 
 def inlined(function: Function) -> Function:
     """The function compiled into every compiled function that calls it."""
-    return njit(forceinline=True, **WITHOUT_REFERENCE_COUNTS)(function)
+    return njit(**INLINED)(function)
 
 
 def entry_point(function: Function) -> Function:
@@ -65,11 +75,11 @@ def entry_point(function: Function) -> Function:
     """
     if IMPORTED_SOURCES and source_digest() == IMPORTED_SOURCES:
         for place in cache_places():
-            compiled = _compiled_with_cache(function, place / f"kernels-{IMPORTED_SOURCES}")
+            compiled = _compiled_with_cache(function, place / f"{PACKAGE}-{IMPORTED_SOURCES}")
             if compiled is not None:
                 return compiled
         _say_once(NO_CACHE, ", ".join(f"no writing in {place}" for place in cache_places()))
-    return njit(nogil=True, **WITHOUT_REFERENCE_COUNTS)(function)
+    return njit(**ENTRY)(function)
 
 
 def _say_once(sentence: str, reason: str = "") -> None:
@@ -93,7 +103,7 @@ def _compiled_with_cache(function, folder):
     """The compiled function with its cache in a folder; None where numba cannot write there."""
     setting, config.CACHE_DIR = config.CACHE_DIR, str(folder)
     try:
-        compiled = njit(cache=True, nogil=True, **WITHOUT_REFERENCE_COUNTS)(function)
+        compiled = njit(cache=True, **ENTRY)(function)
     except RuntimeError:  # numba found no folder at all that it can write to
         return None
     finally:

@@ -3,6 +3,7 @@
 from .compiled import inlined
 from .force_laws import all_forces, elastic_circle_force, penetration, radial_offset
 from .lanes import (
+    LANES,
     any_lane,
     fma,
     in_every_lane,
@@ -14,17 +15,27 @@ from .lanes import (
     store,
     where,
 )
+from .panels import PANEL, panel_plus_vector, panel_zero, store_panel
 from .tables import QUIET, STEPS_WITHOUT_FORCE
 
 
 @inlined
 def apply_compliance(modal, force, deflection):
     """deflection = G force on the contact and element rows of every group, each (row, lane); five
-    rows at a time.
+    rows at a time, of one run PANEL rows.
     """
     G = modal.row_compliance
     for g in range(modal.row_start.size - 1):
         row0, row_f = modal.row_start[g], modal.force_row_start[g]
+        if LANES == 1:
+            at = modal.block_compliance_start[g]
+            for r in range(row0, row_f, PANEL):
+                rows = panel_zero()
+                for s in range(row0, row_f):
+                    rows = panel_plus_vector(modal.block_compliance, at, load(force, s), rows)
+                    at += PANEL
+                store_panel(deflection, r, rows)
+            continue
         stride = modal.row_start[g + 1] - row0
         at = modal.compliance_start[g]
         r = row0

@@ -6,7 +6,7 @@ for the modes, then the supports' resultants, then the drive forces.
 """
 
 from .compiled import entry_point, inlined
-from .lanes import LANES, add_to, clear, fma, load, spread, spread_from, store
+from .lanes import LANES, add_to, clear, fetch_to_write, fma, load, spread, spread_from, store
 from .panels import PANEL, load_panel, panel_plus_common, store_panel, vector_plus_dot
 
 RATIO = 5  # decimation of the first stage
@@ -81,6 +81,7 @@ def finish_output(modal, state, output, tick, at_tick, channels):
     width = state.filter_sums.size // (SLOTS * LANES)
     base = (tick % SLOTS) * width
     column = output.column + at_tick
+    ahead = min(column + 1, output.columns - 1)
     clear(channels)
     for g in range(modal.mode_start.size - 1):
         if state.group_active[g] == 0:
@@ -88,10 +89,12 @@ def finish_output(modal, state, output, tick, at_tick, channels):
         entries = (output.channel_start[g], output.stress_entry[g])
         project_channels(modal, g, output, state.filter_sums, base, entries, channels)
     for c in range(output.stress_start):
+        fetch_to_write(output.values, c * output.columns + ahead)
         store(output.values, c * output.columns + column, load(channels, c))
     for x in range(width - modes):
-        at = (output.stress_start + x) * output.columns + column
-        store(output.values, at, load(state.filter_sums, base + modes + x))
+        at = (output.stress_start + x) * output.columns
+        fetch_to_write(output.values, at + ahead)
+        store(output.values, at + column, load(state.filter_sums, base + modes + x))
     for x in range(width):
         store(state.filter_sums, base + x, 0.0)
 

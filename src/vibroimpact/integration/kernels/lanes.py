@@ -21,7 +21,8 @@ from numba.extending import intrinsic, lower_builtin, models, register_model
 
 from .compiled import inlined
 
-LANES = 8
+# integration.entry_points imports this folder a second time, under a name that ends in one_run.
+LANES = 1 if __package__.endswith("one_run") else 8
 
 DOUBLE = ir.DoubleType()
 INT32 = ir.IntType(32)
@@ -133,23 +134,23 @@ def _address(context, builder, array_type, array, index):
     return builder.gep(context.make_array(array_type)(context, builder, array).data, [index])
 
 
-def _lane_address(context, builder, array_type, array, vector_index):
+def _lane_address(context, builder, array_type, array, vector_index, kind):
     index = builder.mul(vector_index, ir.Constant(vector_index.type, LANES))
-    return builder.bitcast(
-        _address(context, builder, array_type, array, index), VECTOR.as_pointer()
-    )
+    return builder.bitcast(_address(context, builder, array_type, array, index), kind.as_pointer())
 
 
-def load_value(context, builder, array_type, array, vector_index):
-    """Code that loads one vector of an array."""
-    value = builder.load(_lane_address(context, builder, array_type, array, vector_index))
+def load_value(context, builder, array_type, array, vector_index, kind=VECTOR):
+    """Code that loads one vector of an array; of another kind, that and those behind it."""
+    at = _lane_address(context, builder, array_type, array, vector_index, kind)
+    value = builder.load(at)
     value.align = 8
     return value
 
 
 def store_value(context, builder, array_type, array, vector_index, value):
     """Code that stores one vector to an array."""
-    builder.store(value, _lane_address(context, builder, array_type, array, vector_index)).align = 8
+    at = _lane_address(context, builder, array_type, array, vector_index, value.type)
+    builder.store(value, at).align = 8
 
 
 def spread_value(builder, scalar):
@@ -171,10 +172,12 @@ def spread_element(context, builder, array_type, array, index):
 
 
 def call_intrinsic(builder, name, args):
-    """Code that calls an LLVM intrinsic whose arguments and result are lane vectors."""
-    kind = ir.FunctionType(VECTOR, [VECTOR] * len(args))
+    """Code that calls an LLVM intrinsic whose arguments and result are vectors of one kind."""
+    vector = args[0].type
+    kind = ir.FunctionType(vector, [vector] * len(args))
     return builder.call(
-        cgutils.get_or_insert_function(builder.module, kind, f"llvm.{name}.v{LANES}f64"), args
+        cgutils.get_or_insert_function(builder.module, kind, f"llvm.{name}.v{vector.count}f64"),
+        args,
     )
 
 
@@ -225,6 +228,21 @@ def store(typing_context, array, i, value):
         return context.get_dummy_value()
 
     return types.void(array, types.intp, _operand(value)), code
+
+
+@intrinsic
+def fetch_to_write(typing_context, array, i):
+    """Bring vector i of an array to the cache: a store that misses it holds up those behind it."""
+
+    def code(context, builder, sig, args):
+        at = _lane_address(context, builder, sig.args[0], *args, ir.IntType(8))
+        kind = ir.FunctionType(ir.VoidType(), [at.type] + [INT32] * 3)
+        fetch = cgutils.get_or_insert_function(builder.module, kind, "llvm.prefetch.p0")
+        flags = [ir.Constant(INT32, flag) for flag in (1, 3, 1)]  # to write, to keep, data
+        builder.call(fetch, [at, *flags])
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp), code
 
 
 @intrinsic

@@ -49,13 +49,33 @@ from .tallies import tally_contact, tally_displacement, tally_drive, tally_laws,
 
 
 @inlined
-def add_panel_to_rows(modal, g, i, panel, rows):
-    """Add the displacement of group g's rows by one panel of its modes, from mode i on."""
-    width = modal.mode_start[g + 1] - modal.mode_start[g]
-    at = modal.shape_start[g] + i - modal.mode_start[g]
-    for r in range(modal.row_start[g], modal.row_start[g + 1]):
-        store(rows, r, vector_plus_dot(modal.shapes, at, panel, load(rows, r)))
-        at += width
+def add_panel_to_rows(modal, g, i, panel, q, rows):
+    """Add the displacement of group g's rows by one panel of its modes, from mode i on; panel: as
+    in the array q.
+    """
+    row0, row1 = modal.row_start[g], modal.row_start[g + 1]
+    if LANES == 1:
+        blocks = (row1 - row0 + PANEL - 1) // PANEL
+        at = modal.block_shape_start[g] + (i - modal.mode_start[g]) * blocks * PANEL
+        for r in range(row0, row1, PANEL):
+            add_modes_to_rows(modal.block_shapes, at, q, i, rows, r)
+            at += PANEL * PANEL
+    else:
+        width = modal.mode_start[g + 1] - modal.mode_start[g]
+        at = modal.shape_start[g] + i - modal.mode_start[g]
+        for r in range(row0, row1):
+            store(rows, r, vector_plus_dot(modal.shapes, at, panel, load(rows, r)))
+            at += width
+
+
+@inlined
+def add_modes_to_rows(shapes, at, q, i, rows, r):
+    """vector_plus_dot of one run on the PANEL rows from r on, side by side."""
+    even, odd = load_panel(rows, r), panel_zero()
+    for m in range(0, PANEL, 2):
+        even = panel_plus_vector(shapes, at + m * PANEL, load(q, i + m), even)
+        odd = panel_plus_vector(shapes, at + (m + 1) * PANEL, load(q, i + m + 1), odd)
+    store_panel(rows, r, panel_sum(even, odd))
 
 
 @inlined
@@ -64,7 +84,8 @@ def predict_rows(modal, state, u_free):
     clear(u_free)
     for g in range(modal.mode_start.size - 1):
         for i in range(modal.mode_start[g], modal.mode_start[g + 1], PANEL):
-            add_panel_to_rows(modal, g, i, load_panel(state.q_next_free, i), u_free)
+            panel = load_panel(state.q_next_free, i)
+            add_panel_to_rows(modal, g, i, panel, state.q_next_free, u_free)
 
 
 @inlined
@@ -122,7 +143,7 @@ def correct_and_predict(modal, state, tally, work, in_contact, phase):
             store_panel(state.dq, i, dq)
             q_next_free = panel_sum(shifted, dq)
             store_panel(state.q_next_free, i, q_next_free)
-            add_panel_to_rows(modal, g, i, q_next_free, work.u_free)
+            add_panel_to_rows(modal, g, i, q_next_free, state.q_next_free, work.u_free)
     store(tally.dissipated, 0, dissipated)
 
 

@@ -42,6 +42,11 @@ class Modal(NamedTuple):
     velocity_weights: np.ndarray  # (4,) see row_velocity
     row_compliance: np.ndarray  # flat [m/N], end-of-step displacement per force there
     compliance_start: np.ndarray  # (group,)
+    # Of one run, whose vectors lie along blocks of PANEL rows, padded with zeros; else empty:
+    block_shapes: np.ndarray  # flat, of each group (panel, block, mode of the panel, row)
+    block_shape_start: np.ndarray  # (group,)
+    block_compliance: np.ndarray  # flat, of each group (block, row with force, displaced row)
+    block_compliance_start: np.ndarray  # (group,)
 
 
 class Contact(NamedTuple):
