@@ -182,7 +182,7 @@ REFUSALS = [
     ({"preload_N": 5.0}, ["preload_N = 5.0 needs flat lands", "circular: use bars"]),
     (
         {"preload_N": 5.0, "gap_m": 1e-4, "profile": {"kind": "bars", "angle_deg": 0.0}},
-        ["preload_N = 5.0 is given beside gap_m = 0.0001", "give one of them"],
+        ["preload_N = 5.0 is given together with gap_m = 0.0001", "give one of them"],
     ),
     (
         {"profile": {"kind": "lattice", "angle_deg": 0.0, "spacing_m": 0.01}},

@@ -342,7 +342,7 @@ def test_wrong_configuration_is_reported_before_any_plan(study):
     [
         ("discrepancy", "campaign={}/validation.nc", "which the target validation writes"),
         ("quicklook", "campaign={}/development_7.nc", "which the target acceptance writes"),
-        ("discrepancy", "campaign={}/smoke.nc", "where the study 'smoke' is"),
+        ("discrepancy", "campaign={}/smoke.nc", "the folder of the study 'smoke'"),
         ("import_campaign", "import={}/validation", "which the target validation writes"),
     ],
 )
