@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from evidence.validation.figures.prediction import prediction
-from vibroimpact.equivalent_support.linear_prediction import summary_rows
+from evidence.validation.prediction.responses import summary_rows
 from vibroimpact.figures.drawing import save_plots
 from vibroimpact.io.job_log import redirect_output
 from vibroimpact.io.records import read_table, write_table

@@ -7,7 +7,6 @@ import pytest
 
 from vibroimpact.contact.outline import (
     facing_angle,
-    free_space_outline,
     hole_outline,
     radial_gap,
 )
@@ -99,7 +98,7 @@ def energy(profile, displacement):
 
 @pytest.mark.parametrize("profile", PROFILES, ids=lambda profile: str(vars(profile)))
 def test_contact_begins_at_the_outline(profile):
-    outline = free_space_outline(profile, GAP)
+    outline = hole_outline(profile, GAP, 0.0)
     if profile.kind == "planes":  # the sides that no stop closes are no contact
         normals = np.deg2rad(profile.normals_deg)
         beyond = outline @ np.array([np.cos(normals), np.sin(normals)])
@@ -121,13 +120,13 @@ def test_contact_begins_at_the_outline(profile):
     ],
 )
 def test_area_of_the_free_space_is_the_closed_form(profile, expected):
-    outline = free_space_outline(profile, GAP)
+    outline = hole_outline(profile, GAP, 0.0)
     assert np.array_equal(outline[0], outline[-1])
     assert area(outline) == pytest.approx(expected, rel=1e-3)
 
 
 def test_flat_stops_that_press_leave_no_space():
-    assert len(free_space_outline(planes(0.0, 180.0), -1e-5)) == 0
+    assert len(hole_outline(planes(0.0, 180.0), -1e-5, 0.0, reach_m=1e-3)) == 0
 
 
 def test_radial_gap_is_open_where_no_stop_lies_ahead():

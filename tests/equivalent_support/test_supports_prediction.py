@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from evidence.validation.prediction.responses import linear_response
 from tests.physics.test_identification_of_supports import structure
-from vibroimpact.equivalent_support.linear_prediction import linear_response
 from vibroimpact.equivalent_support.supports_prediction import (
     EACH,
     ONE,

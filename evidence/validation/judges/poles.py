@@ -8,6 +8,7 @@ import numpy as np
 from scipy import signal
 
 from evidence.validation.check import Check
+from evidence.validation.prediction.responses import synthesise_records
 from vibroimpact.config.schema import Spectra
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.identify.half_spectra import half_spectra, lag_window
@@ -16,7 +17,7 @@ from vibroimpact.identify.operational_pole import PoleSearch, operational_pole
 from vibroimpact.identify.peak import find_peak
 from vibroimpact.linear.modes import contact_matrix, driven_block
 from vibroimpact.linear.poles import first_pole, frequency_of
-from vibroimpact.linear.responses import frf, synthesise_records
+from vibroimpact.linear.responses import frf
 from vibroimpact.spectra.welch import (
     cross_spectra,
     effective_averages,

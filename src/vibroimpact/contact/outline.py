@@ -1,4 +1,4 @@
-"""The free space of the tube's centre in the hole of a support, and the hole itself, as outlines.
+"""The free space of the tube's centre in the hole of a support, and the outline of the hole.
 
 The two axes are the support's transverse directions. A profile is circular, planes or lobes; those
 with other names are resolved by `profiles.plain_profile`.
@@ -9,8 +9,6 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.config.stage_settings import ConfigPart
-
-from .profiles import plain_profile
 
 POINTS = 361  # of a curved outline: one per degree, ends included
 OPEN = 3.0  # reach where stops leave a side open, as a multiple of the farthest stop
@@ -39,23 +37,6 @@ def radial_gap(profile: ConfigPart, gap_m: float, angle: np.ndarray) -> np.ndarr
     return np.full(turn.shape, float(gap_m))
 
 
-def free_space_outline(
-    profile: ConfigPart, gap_m: float, reach_m: float | None = None
-) -> np.ndarray:
-    """Return (point, 2) m: the closed outline of where the tube's centre moves without contact.
-
-    profile, gap_m: as in radial_gap.
-    reach_m: where stops leave a side open, the outline ends on a square of this half side; 3 gaps
-        by default.
-
-    It runs counter-clockwise and ends where it begins; it has no points where stops leave no space.
-    """
-    if profile.kind == "planes":
-        return _between_stops(profile.normals_deg, gap_m, reach_m or OPEN * abs(gap_m) or 1e-3)
-    angle = np.linspace(0.0, 2.0 * np.pi, POINTS)
-    return _polar(radial_gap(profile, gap_m, angle), angle)
-
-
 def hole_outline(
     profile: ConfigPart,
     gap_m: float,
@@ -67,10 +48,12 @@ def hole_outline(
 
     profile, gap_m: as in radial_gap.
     scale: factor of gap and lobes, to make them visible beside the tube.
-    reach_m: as in free_space_outline.
+    reach_m: where stops leave a side open, the outline ends on a square of this half side; 3 times
+        the farthest stop by default.
 
-    It is the free space, scaled, moved outward by the radius: a flat stop by its normal, a curved
-    hole along the direction from its centre.
+    It is the free space of the tube's centre, scaled, moved outward by the radius: a flat stop by
+    its normal, a curved hole along the direction from its centre. It runs counter-clockwise and
+    ends where it begins; it has no points where stops leave no space.
     """
     wall = radius_m + scale * gap_m
     if profile.kind == "planes":
@@ -111,19 +94,3 @@ def _between_stops(normals_deg: ConfigPart, distance: float, reach: float) -> np
                 kept.append(here + (there - here) * depth / (depth - next_depth))
         outline = np.array(kept).reshape(-1, 2)
     return np.concatenate([outline, outline[:1]])
-
-
-def support_outline(
-    support: ConfigPart, gap_m: float, directions: np.ndarray, extent_m: float, pair: int = 0
-) -> np.ndarray:
-    """Return (point, 2) m, the outline of the free space of a support, from the tube at rest.
-
-    support: entry of the configuration, of any profile. Its first centre_offset_m is used.
-    gap_m: gap at the point; that of the case, or gap_m of the support.
-    directions: (2, 3) transverse directions at the contact point, see ContactPoints.
-    extent_m: half the side of the square that an open profile, such as one bar, is cut to.
-    pair: 1 for the second pair of bars of a lattice with spacing_m.
-    """
-    centre = np.reshape(support.centre_offset_m, (-1, 2))[0]
-    profile = plain_profile(support.profile, directions, pair)
-    return free_space_outline(profile, gap_m, extent_m) + centre

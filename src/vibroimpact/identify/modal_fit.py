@@ -205,19 +205,6 @@ def unpack(values: np.ndarray, modes: IdentifiedModes) -> IdentifiedModes:
     )
 
 
-def relative_errors(
-    predicted: np.ndarray, level: LevelLines, band_Hz: Sequence[float]
-) -> np.ndarray:
-    """Return (channel,) RMS of measured minus predicted response over the measured RMS.
-
-    predicted: (channel, excited line).
-    """
-    inside = level.excited(band_Hz)
-    weight = np.where(level.frequency[inside] == 0.0, 1.0, 2.0)
-    missed = np.sum(weight * np.abs(predicted - level.response[:, inside]) ** 2, axis=1)
-    return np.sqrt(missed / np.sum(weight * np.abs(level.response[:, inside]) ** 2, axis=1))
-
-
 def channel_scale(level: LevelLines, band_Hz: Sequence[float]) -> np.ndarray:
     """Return (channel, 1) root of the summed squares of the response over the excited lines."""
     return np.sqrt(

@@ -2,7 +2,6 @@
 
 import csv
 import io
-import json
 import math
 import os
 import re
@@ -35,9 +34,6 @@ MOST_READ, FLOAT_BYTES = 10**9, 8
 MOST_TIMES_SMALLER, SMALL_BYTES = 100, 10**8
 
 FORMULA = re.compile(r"'*[=+\-@\t\r].")  # how a cell begins that a spreadsheet computes
-
-# What to do with a file that a user gave and that cannot be read; with a result, MAKE_AGAIN.
-GIVE_AGAIN = "copy or export it again, or give another file"
 
 
 def write_record(dataset: xr.Dataset, path: str | Path, names_kept: bool = False) -> None:
@@ -262,23 +258,6 @@ def read_attributes(path: str | Path) -> dict[str, Any]:
     """Return the global attributes of a file of write_record. Raises RecordError."""
     with _opened(path, MAKE_AGAIN) as file:
         return {name: file.getncattr(name) for name in file.ncattrs()}
-
-
-def read_dataset(path: str | Path, remedy: str = GIVE_AGAIN) -> xr.Dataset:
-    """Return the dataset of any netCDF file, decoded by the CF conventions; the time of a record is
-    called `time`, as in read_record.
-
-    remedy: what to do where it cannot be read: GIVE_AGAIN for a file that a user gave, MAKE_AGAIN
-        for a result.
-    Raises RecordError.
-    """
-    try:
-        with xr.open_dataset(path, engine="netcdf4") as dataset:
-            own = {} if TIME in dataset.sizes else {TIME_IN_FILE: TIME}
-            names = {name: own[name] for name in (*dataset.variables, *dataset.dims) if name in own}
-            return dataset.load().rename(names)
-    except (OSError, RuntimeError) as error:
-        raise RecordError(f"{path}: cannot be read as netCDF ({error}): {remedy}") from error
 
 
 def read_given_dataset(path: str | Path, described: Iterable[str] = ()) -> xr.Dataset:
@@ -514,14 +493,6 @@ def write_text(text: str, path: str | Path) -> None:
     """
     with whole_file(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
-
-
-def read_json(path: str | Path) -> Any:
-    """Return the values of a JSON file. Raises RecordError when it is not there or is no JSON."""
-    try:
-        return json.loads(read_text(path))
-    except json.JSONDecodeError as error:
-        raise RecordError(f"{path}: is not JSON ({error}): {MAKE_AGAIN}") from error
 
 
 def read_table(path: str | Path, texts: Iterable[str] = ()) -> list[dict[str, Any]]:

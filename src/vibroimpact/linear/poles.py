@@ -45,14 +45,6 @@ def first_pole(model: ModalModel, k: float, c: float) -> complex:
     return _follow_first_mode(model, k, c)[0]
 
 
-def pole_sensitivity(model: ModalModel, k: float, c: float) -> tuple[complex, complex]:
-    """Return the derivatives of first_pole: by k in rad/s per N/m, by c in rad/s per N s/m."""
-    pole, vector, modes = _follow_first_mode(model, k, c)
-    contact = contact_matrix(model)[modes]
-    slope = _pole_slope(model.damping[modes], contact, c, pole, vector)
-    return slope, pole * slope
-
-
 def support_from_pole(model: ModalModel, pole: complex) -> tuple[float, float]:
     """Return (k in N/m, c in N s/m) of the support that gives the first mode a pole in rad/s.
 

@@ -131,35 +131,6 @@ def _channel_psds(
     return response.real**2 + response.imag**2
 
 
-def synthesise_records(
-    model: ModalModel,
-    k: float,
-    c: float,
-    force: np.ndarray,
-    sampling_frequency: float = 2048.0,
-    output_shapes: np.ndarray | None = None,
-    kind: str = "displacement",
-    channel: int = 0,
-) -> np.ndarray:
-    """Return (output, time) response in m (m/s, m/s²) to a periodic force (time,) in N.
-
-    Every line of the force's spectrum is multiplied by the FRF. This is exact for a force that
-    repeats after its length and has nothing above half the sampling frequency. For a response
-    without period, cut a stretch out of a longer record.
-
-    k, c: stiffness in N/m and damping in N s/m of the support.
-    sampling_frequency: Hz.
-    output_shapes: (mode, output); model.sensor_shapes by default.
-    kind, channel: as in frf.
-    """
-    output_shapes = model.sensor_shapes if output_shapes is None else output_shapes
-    lines = np.fft.rfft(force)
-    frequency = np.fft.rfftfreq(len(force), 1.0 / sampling_frequency)
-    return np.fft.irfft(
-        frf(model, k, c, frequency, output_shapes, kind, channel) * lines, n=len(force)
-    )
-
-
 def _contact_receptances(
     model: ModalModel, laplace: np.ndarray, output_shapes: np.ndarray, channel: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:

@@ -101,11 +101,6 @@ def simulate_cases(
             yield case, record_dataset(config, model, schedule, lanes, lane, case)
 
 
-def seed_force(config: Any, schedule: Schedule, seed: int) -> ForceStream:
-    """Return the force of a seed in the first channel, see seed_forces."""
-    return seed_forces(config, schedule, seed, 1)[0]
-
-
 def seed_forces(config: Any, schedule: Schedule, seed: int, channels: int) -> list[ForceStream]:
     """Return the force of a seed in each channel at every step of the run, per newton of the load.
 

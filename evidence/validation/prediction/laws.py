@@ -1,17 +1,21 @@
-"""The equivalent support as a law of the level, fitted on one study and used beyond it.
+"""Laws of the equivalent support against the level of the motion, fitted on one study.
 
-There are two forms. "load / gap": k and c of the study's tube against load over gap; exact for that
-tube because its model is homogeneous. "scaled": k over the static stiffness of the tube at the
-plates, against the RMS displacement that the FREE tube would have there over the gap. Both follow
-from the linear model of any tube, so that the law applies to another one.
+There are three forms. "load / gap": k and c of the study's tube against load over gap; exact for
+that tube because its model is homogeneous. "scaled": k over the static stiffness of the tube at the
+plates, against the RMS displacement that the FREE tube would have there over the gap. The third is
+the library's law of the held motion (displacement_law).
 """
 
+import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from vibroimpact.equivalent_support.displacement_law import DisplacementLaw, HeldTube
+from vibroimpact.equivalent_support.support_directions import plate_shapes
+from vibroimpact.io.records import plain_values
 from vibroimpact.linear.responses import frf
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.study.method_agreement import COMPARED
@@ -115,26 +119,40 @@ def plate_stiffness(model: ModalModel) -> tuple[float, float]:
     return float(1.0 / flexibility), float(1.0 / (flexibility * first))
 
 
-def driven_direction(model: ModalModel) -> int:
-    """Return 0 or 1: the direction of the contacts that the drive moves most, statically."""
-    driven = np.abs(
-        np.einsum(
-            "mcd,m->cd",
-            model.contact_shapes,
-            model.drive_shapes[:, 0] / np.maximum(model.omega, 1.0) ** 2,
-        )
-    ).sum(axis=0)
-    return int(np.argmax(driven))
+def fit_displacement_law(summary: Sequence[dict[str, Any]], tube: HeldTube) -> DisplacementLaw:
+    """Return the law of a study: running medians over loads, gaps and the compared methods.
 
-
-def plate_shapes(model: ModalModel) -> np.ndarray:
-    """Return (mode, support): mean displacement of each support's points along driven_direction."""
-    along = model.contact_shapes[:, :, driven_direction(model)]
-    return np.stack(
-        [
-            along[:, model.support_of_point == number]
-            @ model.contact_weight[model.support_of_point == number]
-            for number in range(len(model.support_names))
-        ],
-        axis=1,
+    summary: rows of consistency_summary.csv. tube: of the study.
+    """
+    points = []
+    for row in summary:
+        k, c = row["k_median"], row["c_median"]
+        if row["method"] in COMPARED and np.isfinite(k):
+            case = row["load_rms_N"], row["gap_m"]
+            loss = c * tube.first_omega(k) / k
+            points.append((tube.level(*case), tube.held(k, *case), loss))
+    level, held, loss = np.array(sorted(points), dtype=float).T
+    parts = [slice(first, first + NEIGHBOURS) for first in range(0, level.size - NEIGHBOURS + 1, 2)]
+    levels = np.array([np.exp(np.median(np.log(level[part]))) for part in parts])
+    kept = np.concatenate([[True], np.diff(levels) > 0.0])
+    return DisplacementLaw(
+        levels[kept],
+        np.array([np.exp(np.median(np.log(held[part]))) for part in parts])[kept],
+        np.array([np.nanmedian(loss[part]) for part in parts])[kept],  # the shape gives no c
     )
+
+
+def law_text(law: DisplacementLaw, errors: Sequence[dict[str, Any]], origin: dict[str, Any]) -> str:
+    """Return the JSON text of a law, its errors and its origin; numbers with six digits."""
+    content = {
+        "what": "RMS displacement of the linear tube on its equivalent support over the gap (held)"
+        " and loss factor c omega / k (loss), against that of the tube without supports (level)",
+        "origin": origin,
+        **{name: _six_digits(getattr(law, name)) for name in ("level", "held", "loss")},
+        "errors": [{key: float(f"{value:.4g}") for key, value in row.items()} for row in errors],
+    }
+    return json.dumps(plain_values(content), indent=1) + "\n"
+
+
+def _six_digits(values: np.ndarray) -> list[float]:
+    return [float(f"{value:.6g}") for value in values]
