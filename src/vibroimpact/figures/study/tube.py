@@ -420,48 +420,13 @@ def figure_02_free_modes(config, structure):
     )
     nodes = structure.nodes
     view = view_axes(nodes)
-    scale = SHAPE_SIZE * np.ptp(nodes, axis=0).max()
     for order, (axes, value, shape) in enumerate(
         zip(sheet.axes.values(), frequency, shapes, strict=False), start=1
     ):
         across = np.sum(shape[:, view[2]] ** 2) > 0.5 * np.sum(shape**2)
         axes.set_title(f"{order} {'out of plane' if across else 'in plane'}, {value:.2f} Hz")
-        ribs = np.linspace(0, len(nodes) - 1, 41).astype(int)
-        for index in ribs:
-            pair = np.array([nodes[index], nodes[index] + scale * shape[index]])
-            axes.plot(
-                *seen_obliquely(pair, view).T,
-                color=PALE,
-                linewidth=0.8,
-                zorder=1,
-            )
-        for curve, points, style in (
-            ("at rest", nodes, {"color": GREY, "linewidth": 1.0}),
-            (
-                "mode",
-                nodes + scale * shape,
-                {"color": BLUE if across else ORANGE, "linewidth": 2.2},
-            ),
-        ):
-            seen = seen_obliquely(points, view)
-            tags = (
-                {
-                    "frequency_Hz": value,
-                    "shape_x": shape[:, 0],
-                    "shape_y": shape[:, 1],
-                    "shape_z": shape[:, 2],
-                }
-                if curve == "mode"
-                else {}
-            )
-            sheet.line(
-                axes,
-                ("horizontal_m", seen[:, 0]),
-                ("vertical_m", seen[:, 1]),
-                curve,
-                tags=tags,
-                **style,
-            )
+        look = {"color": BLUE if across else ORANGE, "linewidth": 2.2}
+        _draw_mode(sheet, axes, (nodes, view), value, shape, look)
         axes.plot(
             *seen_obliquely(nodes[held_ends(config.structure)], view).T,
             linestyle="none",
@@ -476,6 +441,22 @@ def figure_02_free_modes(config, structure):
     for axes in list(sheet.axes.values())[len(frequency) :]:
         axes.set_visible(False)
     return [sheet]
+
+
+def _draw_mode(sheet, axes, seen, frequency, shape, look):
+    """Draw the tube at rest and displaced in a mode; seen: (nodes, view)."""
+    nodes, view = seen
+    displaced = nodes + SHAPE_SIZE * np.ptp(nodes, axis=0).max() * shape
+    for index in np.linspace(0, len(nodes) - 1, 41).astype(int):
+        pair = np.array([nodes[index], displaced[index]])
+        axes.plot(*seen_obliquely(pair, view).T, color=PALE, linewidth=0.8, zorder=1)
+    tags = {"frequency_Hz": frequency, **{f"shape_{x}": shape[:, i] for i, x in enumerate("xyz")}}
+    for curve, points, tags_of, style in (
+        ("at rest", nodes, {}, {"color": GREY, "linewidth": 1.0}),
+        ("mode", displaced, tags, look),
+    ):
+        across, up = seen_obliquely(points, view).T
+        sheet.line(axes, ("horizontal_m", across), ("vertical_m", up), curve, tags=tags_of, **style)
 
 
 def _draw_supports_obliquely(axes, structure, view):
