@@ -7,10 +7,10 @@ JOBS ?= $(shell $(PYTHON) -c "import os; print(os.cpu_count() or 2)")
 CONFIG ?= config/study.yaml
 
 BIN := .venv/bin
-# A stamp is named after the content of its lock: a changed lock, and nothing else, makes the
-# environment anew. (1) environment, (2) lock.
-digest = $(shell $(PYTHON) -c "import hashlib; \
-	print(hashlib.sha256(open('$(1)', 'rb').read()).hexdigest()[:16])")
+# A stamp is named after the content of the base lock and of the one that adds to it: a change of
+# these, and nothing else, makes the environment anew. (1) environment, (2) lock.
+digest = $(shell $(PYTHON) -c "import hashlib; print(hashlib.sha256(b''.join(open(name, 'rb') \
+	.read() for name in sorted({'requirements.lock', '$(1)'}))).hexdigest()[:16])")
 stamp = $(1)/ready-$(call digest,$(2))
 READY := $(call stamp,.venv,requirements.lock)
 READY_JUDGES := $(call stamp,.venv-judges,requirements-judges.lock)
