@@ -1,24 +1,12 @@
-"""The public names, for type checkers and editors: see PUBLIC in __init__.py."""
+"""The public names: __init__.py imports each from here when it is first used."""
 
 from .campaign.checks.file_checks import check_campaign as check_campaign
-from .campaign.file import (
-    CampaignError as CampaignError,
-)
-from .campaign.file import (
-    Channel as Channel,
-)
-from .campaign.file import (
-    Level as Level,
-)
-from .campaign.file import (
-    campaign_dataset as campaign_dataset,
-)
-from .campaign.file import (
-    read_campaign as read_campaign,
-)
-from .campaign.file import (
-    write_campaign as write_campaign,
-)
+from .campaign.file import CampaignError as CampaignError
+from .campaign.file import Channel as Channel
+from .campaign.file import Level as Level
+from .campaign.file import campaign_dataset as campaign_dataset
+from .campaign.file import read_campaign as read_campaign
+from .campaign.file import write_campaign as write_campaign
 from .campaign.importing.assemble import import_folder as import_folder
 from .config.changed_keys import changed_config as changed_config
 from .config.json_schema import json_schema as json_schema
