@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -59,19 +60,22 @@ def _label_outside(sheet: Sheet, rows: list[list[str]], share: str) -> None:
     """Leave labels of shared axes to the lowest panel of a column and the first of a row, and the
     same label of panels side by side to the left one.
     """
-    lowest = {[name for name in column if name != "."][-1] for column in zip(*rows, strict=True)}
-    first = {[name for name in row if name != "."][0] for row in rows}
+    lowest = {_named(column)[-1] for column in zip(*rows, strict=True)}
+    first = {_named(row)[0] for row in rows}
     labels = {name: axes.get_ylabel() for name, axes in sheet.axes.items()} | {".": ""}
-    for left, right in (pair for row in rows for pair in zip(row, row[1:], strict=False)):
+    for left, right in (pair for row in rows for pair in pairwise(row)):
         if left != right and labels[left] == labels[right] and right != ".":
             sheet.axes[right].set_ylabel("")
-    for name, axes in sheet.axes.items():
-        if "x" in share:
-            axes.tick_params(labelbottom=name in lowest)
-            axes.set_xlabel(axes.get_xlabel() if name in lowest else "")
-        if "y" in share:
-            axes.tick_params(labelleft=name in first)
-            axes.set_ylabel(axes.get_ylabel() if name in first else "")
+    for letter, side, outer in (("x", "labelbottom", lowest), ("y", "labelleft", first)):
+        for name, axes in sheet.axes.items() if letter in share else ():
+            shown_outside: dict[str, Any] = {side: name in outer}
+            axes.tick_params(**shown_outside)
+            if name not in outer:
+                axes.set(**{f"{letter}label": ""})
+
+
+def _named(panels: Iterable[str]) -> list[str]:
+    return [name for name in panels if name != "."]
 
 
 def _draw_panel(sheet: Sheet, axes: Axes, panel: Panel) -> None:

@@ -138,20 +138,13 @@ def _put_variables(
 
     names: {name of a variable: its name in the file} where they differ.
 
-    Returns the auxiliary coordinates that no variable refers to. An auxiliary coordinate is one
-    whose name is not that of a dimension.
+    Returns the auxiliary coordinates that no variable refers to.
     """
-    auxiliary = {
-        names.get(str(name), name): set(dataset[name].dims)
-        for name in dataset.coords
-        if name not in dataset.sizes or (name in names and name != TIME)
-    }
+    auxiliary = _auxiliary(dataset, names)
     named: set[str] = set()
     for name, variable in dataset.variables.items():
         values = variable.values
-        text = values.dtype.kind in "UO" and all(isinstance(value, str) for value in values.flat)
-        if not text and values.dtype.kind not in "fiu":
-            raise TypeError(f"'{name}' holds {values.dtype}: numbers and texts alone are written")
+        text = _is_text(str(name), values)
         attributes = dict(variable.attrs)
         if name not in dataset.coords:
             attributes |= _coordinates_attribute(variable.dims, auxiliary, named)
@@ -172,6 +165,23 @@ def _create(file, name, dtype, dims, attributes):
     stored.setncatts(attributes)
     stored.set_auto_maskandscale(False)
     return stored
+
+
+def _auxiliary(dataset: xr.Dataset, names: dict[str, str]) -> dict:
+    """Return {name in the file: dimensions} of the coordinates whose name is no dimension's."""
+    return {
+        names.get(str(name), name): set(dataset[name].dims)
+        for name in dataset.coords
+        if name not in dataset.sizes or (name in names and name != TIME)
+    }
+
+
+def _is_text(name: str, values: np.ndarray) -> bool:
+    """Return whether values are texts. Raises TypeError where they are no numbers either."""
+    text = values.dtype.kind in "UO" and all(isinstance(value, str) for value in values.flat)
+    if not text and values.dtype.kind not in "fiu":
+        raise TypeError(f"'{name}' holds {values.dtype}: numbers and texts alone are written")
+    return text
 
 
 def _coordinates_attribute(dims: Iterable, auxiliary: dict, named: set) -> dict[str, str]:

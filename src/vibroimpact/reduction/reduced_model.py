@@ -406,6 +406,18 @@ def named_arc_length(structure: TubeStructure, config: ConfigPart, name: str) ->
     return structure.centreline.locate(config.points[name], f"point {name}")
 
 
+def _wanted_sensors(structure: Any, config: ConfigPart) -> list[tuple[str, str]]:
+    """Return the (point, direction) of the sensors: those of record.sensors. Without that section,
+    a structure that is no tube has one for every direction of every named point.
+    """
+    sensors = config.record.sensors
+    if sensors is not None:
+        return [(name, axis) for name in sensors.points for axis in sensors.directions]
+    if config.structure.kind in TUBES:
+        return []
+    return [(name, axis) for name, axes in structure.directions.items() for axis in axes]
+
+
 def _sensor_fields(
     structure: Any,
     shapes: np.ndarray,
@@ -413,21 +425,10 @@ def _sensor_fields(
     point_rows: Callable,
     gauges: Sequence[tuple[str, np.ndarray]],
 ) -> dict[str, Any]:
-    """Return the fields of the sensors, named "point.direction", and "point.strain" of the gauges.
-
-    There is one for every point and direction of record.sensors. Without that section, a structure
-    that is no tube has one for every direction of every named point.
-    """
-    tube = config.structure.kind in TUBES
-    sensors = config.record.sensors
-    if sensors is not None:
-        wanted = [(name, axis) for name in sensors.points for axis in sensors.directions]
-    elif tube:
-        wanted = []
-    else:
-        wanted = [(name, axis) for name, axes in structure.directions.items() for axis in axes]
+    """Return the fields of the sensors, "point.direction", and "point.strain" of the gauges."""
+    wanted = _wanted_sensors(structure, config)
     positions = [np.array(config.points.get(name, (0.0, 0.0, 0.0))) for name, _ in wanted]
-    if tube:
+    if config.structure.kind in TUBES:
         places = [named_arc_length(structure, config, name) for name, _ in wanted]
         positions = [structure.centreline.position(place) for place in places]
     rows = [AXES[axis] @ point_rows(name) for name, axis in wanted]

@@ -225,7 +225,7 @@ def _ratio(quantity, method, rows, chosen):
 def _agreement(quantity, answers, load_label):
     """Return the plot of the agreement by gap and load: one cell per case, with its reason."""
     gaps, pairs = places_of(answers)
-    frames, kinds = {}, list(CELLS)
+    frames = {}
     for index, pair in enumerate(pairs):
         chosen = {
             (row.gap_m, row.load_rms_N): row
@@ -233,19 +233,8 @@ def _agreement(quantity, answers, load_label):
             if (row.group, row.direction) == pair
         }
         loads = sorted({load for _, load in chosen})
-        rows = [[(gap, load, chosen.get((gap, load))) for load in loads] for gap in gaps]
-        found = [[_kind(quantity, cell) for _, _, cell in row] for row in rows]
-        cells = Cells(
-            [[kinds.index(kind) for kind in row] for row in found],
-            [colour for _, colour, _ in CELLS.values()],
-            [[CELLS[kind][0] for kind in row] for row in found],
-            [
-                [
-                    f"load {load:.3g}, gap {gap * 1e3:.3g} mm<br>{_reason(quantity, cell)}"
-                    for gap, load, cell in row
-                ]
-                for row in rows
-            ],
+        cells = _cells(
+            quantity, [[(gap, load, chosen.get((gap, load))) for load in loads] for gap in gaps]
         )
         frames[key_of(index)] = Panel(
             Axis("load_rms_N", label=load_label, names=[f"{load:.3g}" for load in loads]),
@@ -266,6 +255,23 @@ def _agreement(quantity, answers, load_label):
         frames,
         ("place",),
         height=150 + 40 * len(gaps),
+    )
+
+
+def _cells(quantity, rows):
+    """Return the Cells of rows of (gap, load, Answer or None)."""
+    kinds = [[_kind(quantity, cell) for _, _, cell in row] for row in rows]
+    return Cells(
+        [[list(CELLS).index(kind) for kind in row] for row in kinds],
+        [colour for _, colour, _ in CELLS.values()],
+        [[CELLS[kind][0] for kind in row] for row in kinds],
+        [
+            [
+                f"load {load:.3g}, gap {gap * 1e3:.3g} mm<br>{_reason(quantity, cell)}"
+                for gap, load, cell in row
+            ]
+            for row in rows
+        ],
     )
 
 

@@ -33,10 +33,22 @@ def timing(config, rows):
         " the logs and benchmark files of the last run of each job."
     )
     rules = [row for row in rows if row["part"] == "" and row["rule"] != "all"]
-    shown = [name for name in COLOURS if any(row["part"] == name for row in rows)]
-    others = {row["part"] for row in rows if row["part"]} - set(COLOURS)
+    items, ends = _bars(rows, rules)
+    axes = (
+        Axis("cpu_s", low=0.0, high=1.35 * ends.max()),
+        Axis("rule", names=[row["rule"] for row in rules]),
+    )
+    panel = Panel(*axes, items, legend="lower right")
+    size = (7.6, 1.4 + 0.34 * len(rules))
+    return [Plot("timing", "Where the time goes", caption, {"main": panel}, size=size)]
+
+
+def _bars(rows, rules):
+    """Return (Bars of the parts and Texts at their ends, (rule,) CPU s where they end)."""
+    parts = dict.fromkeys(row["part"] for row in rows if row["part"])
+    shown = [*(name for name in COLOURS if name in parts), *sorted(set(parts) - set(COLOURS))]
     start, items = np.zeros(len(rules)), []
-    for part in [*shown, *sorted(others)]:
+    for part in shown:
         times = {row["rule"]: row["cpu_s"] for row in rows if row["part"] == part}
         at = [place for place, rule in enumerate(rules) if rule["rule"] in times]
         tags = {key: [rules[place][key] for place in at] for key in ("rule", "jobs", "max_rss_MB")}
@@ -47,10 +59,4 @@ def timing(config, rows):
     for place, rule in enumerate(rules):
         each = f"{rule['jobs']} × {rule['cpu_s'] / rule['jobs']:.1f} s, {rule['max_rss_MB']:.0f} MB"
         items.append(Text(each, start[place], place, shift=(4, 0), align=("left", "center")))
-    axes = (
-        Axis("cpu_s", low=0.0, high=1.35 * start.max()),
-        Axis("rule", names=[row["rule"] for row in rules]),
-    )
-    panel = Panel(*axes, items, legend="lower right")
-    size = (7.6, 1.4 + 0.34 * len(rules))
-    return [Plot("timing", "Where the time goes", caption, {"main": panel}, size=size)]
+    return items, start
