@@ -9,7 +9,7 @@ from evidence.acceptance.shards import draw_name
 from tests.support.sound_campaign import sound_campaign
 from vibroimpact.campaign.checks.file_checks import check_campaign, usable_signals
 from vibroimpact.campaign.contract import contract_problems
-from vibroimpact.campaign.file import fill_missing, write_campaign
+from vibroimpact.campaign.file import fill_missing, measured_values, write_campaign
 from vibroimpact.config.reading import load_config
 from vibroimpact.config.reserved_names import name_problem
 from vibroimpact.diagnosis.diagnose import diagnose
@@ -55,6 +55,13 @@ def test_what_can_not_be_is_told_all_at_once(campaign):
     ):
         assert part in told
     assert len(told.splitlines()) == 11
+
+
+def test_a_signalling_nan_is_a_missing_sample(campaign):
+    campaign["response"] = campaign["response"].astype(np.float32)
+    campaign["response"].values.view(np.uint32)[0, 1, 5] = 0x7F800001
+    missing = np.isnan(measured_values(campaign, "response", 0))
+    assert np.argwhere(missing).tolist() == [[1, 5]]
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, 1.0e30])

@@ -4,6 +4,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -264,6 +265,7 @@ def broken_files(draw):
     return bytes(content)
 
 
+@pytest.mark.filterwarnings("ignore:Generating overly large repr")
 def test_broken_campaign_files_are_refused_or_read(reliability):
     tried = Tried()
     model()

@@ -502,7 +502,9 @@ def measured_values(campaign: xr.Dataset, name: str, record: int) -> np.ndarray:
 
     NaN where a sample is missing: where it is not finite, or beyond LARGEST.
     """
-    values = campaign[name].values[record, :, : valid_count(campaign, record)].astype(float)
+    values = campaign[name].values[record, :, : valid_count(campaign, record)]
+    with np.errstate(invalid="ignore"):  # a signalling NaN of a damaged file
+        values = values.astype(float)
     return np.where(np.abs(values) <= LARGEST, values, np.nan)
 
 
