@@ -61,7 +61,7 @@ reliability: $(READY) ## the tests of faults and bad input: writes docs/reliabil
 lint: $(READY) ## formatting, static checks, types; sizes beside their limits
 	$(BIN)/ruff format --check
 	$(BIN)/ruff check
-	$(BIN)/snakefmt --check Snakefile workflow evidence/rules examples src/vibroimpact/study_folder
+	$(BIN)/snakefmt --check Snakefile workflow evidence/rules examples src/vibroimpact/study/folder
 	$(BIN)/mypy
 	@$(BIN)/python tests/test_typed.py
 	@$(BIN)/python -m evidence.size
@@ -69,7 +69,7 @@ lint: $(READY) ## formatting, static checks, types; sizes beside their limits
 format: $(READY) ## format Python files and rules
 	$(BIN)/ruff check --fix --select I
 	$(BIN)/ruff format
-	$(BIN)/snakefmt Snakefile workflow evidence/rules examples src/vibroimpact/study_folder
+	$(BIN)/snakefmt Snakefile workflow evidence/rules examples src/vibroimpact/study/folder
 
 judges: $(READY_JUDGES) ## tests against other codes, in an environment of their own
 	.venv-judges/bin/python -m pytest tests/judges -rs

@@ -15,7 +15,7 @@ from vibroimpact import __version__, stability_command
 from vibroimpact.diagnosis import diagnose_command, supports_command
 from vibroimpact.equivalent_support.command import add_arguments
 from vibroimpact.equivalent_support.contact_export import command as contact_command
-from vibroimpact.wear import command as wear_command
+from vibroimpact.study.wear import command as wear_command
 
 # Read when numpy is first imported. The matrices are small: threads would wait for each other, and
 # take up to ten times the CPU. Runs are what is done side by side.
@@ -116,7 +116,7 @@ def _compare(options: argparse.Namespace) -> int:
 
 def _new(options: argparse.Namespace) -> int:
     """Lay out a folder for a study. Return 1 where it can not be done."""
-    from vibroimpact.study_folder.new_study import NewStudyError, new_study
+    from vibroimpact.study.folder.new_study import NewStudyError, new_study
 
     try:
         files = new_study(options.folder, options.example)

@@ -20,8 +20,8 @@ from vibroimpact.equivalent_support.displacement_law import (
     held_tube,
 )
 from vibroimpact.equivalent_support.law_file import LAW_FILE, shipped_law
+from vibroimpact.identify.linear.responses import frf
 from vibroimpact.io.records import read_table
-from vibroimpact.linear.responses import frf
 from vibroimpact.study.method_agreement import COMPARED
 
 BAND = (5.0, 200.0)

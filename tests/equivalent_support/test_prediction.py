@@ -16,7 +16,7 @@ from evidence.validation.prediction.responses import (
 from vibroimpact.equivalent_support.linear_prediction import (
     expected_peak_factor,
 )
-from vibroimpact.linear.responses import frf
+from vibroimpact.identify.linear.responses import frf
 
 BAND = (5.0, 200.0)
 

@@ -11,10 +11,10 @@ from scipy import optimize
 
 from evidence.validation.prediction.responses import synthesise_records
 from vibroimpact.config.reading import load_config
-from vibroimpact.linear import responses
-from vibroimpact.linear.modes import first_mode_shape, natural_frequencies
-from vibroimpact.linear.poles import first_pole, support_from_pole
-from vibroimpact.linear.responses import frf, psd_family
+from vibroimpact.identify.linear import responses
+from vibroimpact.identify.linear.modes import first_mode_shape, natural_frequencies
+from vibroimpact.identify.linear.poles import first_pole, support_from_pole
+from vibroimpact.identify.linear.responses import frf, psd_family
 from vibroimpact.reduction.reduced_model import build_model
 
 STUDY = load_config(Path(__file__).resolve().parents[2] / "config" / "study.yaml")

@@ -13,8 +13,8 @@ from vibroimpact.equivalent_support.displacement_law import held_tube
 from vibroimpact.equivalent_support.law_file import REGIONS
 from vibroimpact.identify.estimate import table_rows
 from vibroimpact.identify.identify_case import identify_case
+from vibroimpact.identify.linear.modes import natural_frequencies
 from vibroimpact.io.provenance import config_digest
-from vibroimpact.linear.modes import natural_frequencies
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.study.case_spectra import case_spectra
 from vibroimpact.study.cases import Case

@@ -15,8 +15,8 @@ import numpy as np
 
 from vibroimpact.equivalent_support.displacement_law import DisplacementLaw, HeldTube
 from vibroimpact.equivalent_support.support_directions import plate_shapes
+from vibroimpact.identify.linear.responses import frf
 from vibroimpact.io.records import plain_values
-from vibroimpact.linear.responses import frf
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.study.method_agreement import COMPARED
 

@@ -16,7 +16,7 @@ from vibroimpact.equivalent_support.linear_prediction import (
     displacement_and_stress,
     response_of_psds,
 )
-from vibroimpact.linear.responses import frf
+from vibroimpact.identify.linear.responses import frf
 from vibroimpact.reduction.modal_model import ModalModel
 
 # Name and largest fraction of time in contact.

@@ -9,9 +9,9 @@ from vibroimpact.config.reading import check_config
 from vibroimpact.config.structure import UTube
 from vibroimpact.equivalent_support.linear_prediction import recorded_response
 from vibroimpact.geometry.sections import outer_width
+from vibroimpact.identify.spectra.welch import psd_statistics, segment_spectra
 from vibroimpact.io.records import read_record, read_table
 from vibroimpact.reduction.reduced_model import build_model
-from vibroimpact.spectra.welch import psd_statistics, segment_spectra
 from vibroimpact.study.cases import Case, load_values
 from vibroimpact.study.simulation import simulate_cases
 

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.identify.linear.modes import contact_matrix, driven_block
 from vibroimpact.identify.statistical_linearisation import band_power
-from vibroimpact.linear.modes import contact_matrix, driven_block
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .support_directions import plate_shapes

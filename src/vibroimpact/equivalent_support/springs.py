@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.linear.support_groups import acting_directions
+from vibroimpact.identify.linear.support_groups import acting_directions
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .answer import Answer, EquivalentError, GroupAnswer, Span
@@ -54,8 +54,8 @@ def point_springs(
     """Return the SpringSet of an answer on the structure it belongs to.
 
     The k and c of a support are shared by its contact points with their weights, in both
-    transverse directions, as in the linear tube that the methods compare with (linear.modes).
-    What is not resolved is left out.
+    transverse directions, as in the linear tube that the methods compare with
+    (identify.linear.modes). What is not resolved is left out.
 
     points: "each" for every contact point, "one" for a single spring at the middle of a support.
     across: "same" gives a transverse direction that the force of the study does not move the k and

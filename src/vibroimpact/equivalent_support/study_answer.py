@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.identify.estimate import METHODS
+from vibroimpact.identify.linear.support_groups import acting_directions
 from vibroimpact.io.records import RecordError
-from vibroimpact.linear.support_groups import acting_directions
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.study.method_agreement import VERDICTS

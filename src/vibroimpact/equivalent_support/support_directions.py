@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.linear.support_groups import acting_directions
+from vibroimpact.identify.linear.support_groups import acting_directions
 from vibroimpact.reduction.modal_model import ModalModel
 
 

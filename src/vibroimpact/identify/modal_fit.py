@@ -11,8 +11,8 @@ from dataclasses import replace
 import numpy as np
 
 from vibroimpact.identify.least_squares import minimise
+from vibroimpact.identify.spectra.periodic_lines import LevelLines
 from vibroimpact.reduction.modal_structure import IdentifiedModes
-from vibroimpact.spectra.periodic_lines import LevelLines
 
 from .stabilisation import StabilisationChart
 from .stable_poles import stable_poles

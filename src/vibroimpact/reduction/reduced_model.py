@@ -9,8 +9,6 @@ from scipy import linalg, sparse
 
 from vibroimpact.config.name_checks import TUBES
 from vibroimpact.config.stage_settings import ConfigPart
-from vibroimpact.contact.local_elements import element_laws, element_rows, split_damping
-from vibroimpact.contact.supports import contact_laws, contact_preload
 from vibroimpact.excitation.fluid_rows import fluid_fields
 from vibroimpact.excitation.force_vectors import (
     constant_force_vector,
@@ -21,6 +19,8 @@ from vibroimpact.excitation.force_vectors import (
 from vibroimpact.excitation.turbulence import drive_shapes
 from vibroimpact.geometry.centreline import SAME_PLACE_M
 from vibroimpact.io.memo import Memo, content_key
+from vibroimpact.structure.contact.local_elements import element_laws, element_rows, split_damping
+from vibroimpact.structure.contact.supports import contact_laws, contact_preload
 from vibroimpact.structure.definiteness import require_definite
 from vibroimpact.structure.point_structure import PointStructure, build_point_structure
 from vibroimpact.structure.rigid_motions import free_rigid_motions

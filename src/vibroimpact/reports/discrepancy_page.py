@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
+from vibroimpact.diagnosis.verdict.content import Misfit, Verdict
 from vibroimpact.effects.effect import TESTS
 from vibroimpact.effects.places import place_in_words
 from vibroimpact.effects.registry import EFFECTS, effects_in_words
-from vibroimpact.verdict.content import Misfit, Verdict
 
 from .explanations import best_places, chance_text, explanations_of
 from .number_text import digits, percent

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from vibroimpact.diagnosis.verdict.content import Estimate, Verdict, not_run_sentence
 from vibroimpact.effects.places import at_place
 from vibroimpact.effects.registry import effects_in_words
 from vibroimpact.io.display_units import display_unit
-from vibroimpact.verdict.content import Estimate, Verdict, not_run_sentence
 
 from .explanations import NOTHING, chance_text, explanations_of, not_explained
 from .number_text import digits, percent
