@@ -8,7 +8,7 @@ import pytest
 from pydantic import ValidationError
 
 from tests.support.discrepancy_results import made_up_verdict
-from vibroimpact import verdict
+from vibroimpact.diagnosis import verdict
 from vibroimpact.diagnosis.verdict.content import (
     CONCLUSIONS,
     Estimate,
