@@ -7,10 +7,10 @@ JOBS ?= $(shell $(PYTHON) -c "import os; print(os.cpu_count() or 2)")
 CONFIG ?= config/study.yaml
 
 BIN := .venv/bin
-# A stamp is named after the content of its lock: a changed lock, and nothing else, makes the
-# environment anew. (1) environment, (2) lock.
-digest = $(shell $(PYTHON) -c "import hashlib; \
-	print(hashlib.sha256(open('$(1)', 'rb').read()).hexdigest()[:16])")
+# A stamp is named after the content of the base lock and of the one that adds to it: a change of
+# these, and nothing else, makes the environment anew. (1) environment, (2) lock.
+digest = $(shell $(PYTHON) -c "import hashlib; print(hashlib.sha256(b''.join(open(name, 'rb') \
+	.read() for name in sorted({'requirements.lock', '$(1)'}))).hexdigest()[:16])")
 stamp = $(1)/ready-$(call digest,$(2))
 READY := $(call stamp,.venv,requirements.lock)
 READY_JUDGES := $(call stamp,.venv-judges,requirements-judges.lock)
@@ -61,7 +61,7 @@ reliability: $(READY) ## the tests of faults and bad input: writes docs/reliabil
 lint: $(READY) ## formatting, static checks, types; sizes beside their limits
 	$(BIN)/ruff format --check
 	$(BIN)/ruff check
-	$(BIN)/snakefmt --check Snakefile workflow evidence/rules examples src/vibroimpact/study_folder
+	$(BIN)/snakefmt --check Snakefile workflow evidence/rules examples src/vibroimpact/study/folder
 	$(BIN)/mypy
 	@$(BIN)/python tests/test_typed.py
 	@$(BIN)/python -m evidence.size
@@ -69,7 +69,7 @@ lint: $(READY) ## formatting, static checks, types; sizes beside their limits
 format: $(READY) ## format Python files and rules
 	$(BIN)/ruff check --fix --select I
 	$(BIN)/ruff format
-	$(BIN)/snakefmt Snakefile workflow evidence/rules examples src/vibroimpact/study_folder
+	$(BIN)/snakefmt Snakefile workflow evidence/rules examples src/vibroimpact/study/folder
 
 judges: $(READY_JUDGES) ## tests against other codes, in an environment of their own
 	.venv-judges/bin/python -m pytest tests/judges -rs

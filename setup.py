@@ -1,7 +1,7 @@
 """What pyproject.toml can not state: the wheel brings workflow, configurations and examples.
 
 They live at the top of the repository and are copied to vibroimpact/share/, where
-vibroimpact.study_folder finds them.
+vibroimpact.study.folder finds them.
 """
 
 from pathlib import Path

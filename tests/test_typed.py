@@ -7,8 +7,8 @@ import pytest
 
 LIBRARY = Path(__file__).parents[1] / "src" / "vibroimpact"
 
-# Packages without complete type hints so far. One leaves this list when its test passes.
-NOT_YET_TYPED = ("figures",)
+# Folders without complete type hints so far. One leaves this list when its test passes.
+NOT_YET_TYPED = ("reports/figures",)
 PACKAGES = sorted(
     {path.relative_to(LIBRARY).parts[0].split(".")[0] for path in LIBRARY.rglob("*.py")}
 )
@@ -21,7 +21,8 @@ COMPILED = LIBRARY / "integration" / "kernels"
 def files_of(package: str) -> list[Path]:
     """The source files of a package, or of a single module beside the packages."""
     files = sorted((LIBRARY / package).rglob("*.py")) or [LIBRARY / f"{package}.py"]
-    return [file for file in files if COMPILED not in file.parents]
+    left_out = {COMPILED, *(LIBRARY / folder for folder in NOT_YET_TYPED)}
+    return [file for file in files if left_out.isdisjoint(file.parents)]
 
 
 def without_hints(source: str) -> list[str]:
@@ -52,7 +53,7 @@ def is_annotated(function: ast.FunctionDef) -> bool:
     )
 
 
-@pytest.mark.parametrize("package", [name for name in PACKAGES if name not in NOT_YET_TYPED])
+@pytest.mark.parametrize("package", PACKAGES)
 def test_public_functions_have_type_hints(package):
     missing = {
         str(path.relative_to(LIBRARY)): names

@@ -4,8 +4,8 @@ from pathlib import Path
 
 from vibroimpact.config.reading import load_config
 from vibroimpact.diagnosis.diagnose import run_diagnosis
+from vibroimpact.diagnosis.verdict.content import write_verdict
 from vibroimpact.io.provenance import package_digest
-from vibroimpact.verdict.content import write_verdict
 
 
 def run_sealed(campaign: str | Path, model: str | Path, verdict: str | Path) -> None:

@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from evidence.benchmarks.table import SECONDS, three_digits
-from vibroimpact.figures.style import BLUE, GREEN, GREY, ORANGE, SKY
+from vibroimpact.reports.figures.style import BLUE, GREEN, GREY, ORANGE, SKY
 
 COLOURS = (ORANGE, BLUE, GREEN, SKY)
 BAR = 0.8  # height of the bars of one peer together

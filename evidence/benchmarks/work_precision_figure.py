@@ -3,7 +3,7 @@
 import matplotlib.pyplot as plt
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from vibroimpact.figures.style import BLUE, GREY, RED
+from vibroimpact.reports.figures.style import BLUE, GREY, RED
 
 # scheme -> (colour, marker, label, where the number of steps stands beside a point, in points)
 STYLES = {

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from evidence.validation.prediction.law_errors import error_rows, measured_law
+from evidence.validation.prediction.laws import law_text
 from vibroimpact.config.reading import check_config, read_yaml
-from vibroimpact.equivalent_support.law_file import law_text
 from vibroimpact.io.job_log import redirect_output
 from vibroimpact.io.records import read_table, write_table, write_text
 from vibroimpact.reduction.model_file import read_model

@@ -6,10 +6,10 @@ from evidence.validation.claims.table import all_claims
 from evidence.validation.figures.claims import claims_of_the_peak, claims_of_the_shape
 from evidence.validation.study_curves import read_curves
 from vibroimpact.config.reading import check_config
-from vibroimpact.figures.drawing import save_plots
 from vibroimpact.io.job_log import redirect_output
 from vibroimpact.io.records import read_table, write_table
 from vibroimpact.reduction.model_file import read_model
+from vibroimpact.reports.figures.drawing import save_plots
 
 redirect_output(snakemake.log[0])
 config = check_config(snakemake.params.config, "the study's configuration")

@@ -10,9 +10,9 @@ from evidence.validation.convergence import (
 )
 from evidence.validation.figures import convergence as validation_convergence
 from vibroimpact.config.reading import check_config
-from vibroimpact.figures.drawing import save_plots
 from vibroimpact.io.job_log import redirect_output
 from vibroimpact.io.records import write_table
+from vibroimpact.reports.figures.drawing import save_plots
 
 redirect_output(snakemake.log[0])
 config = check_config(snakemake.params.config, "the study's configuration")

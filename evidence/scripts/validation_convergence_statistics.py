@@ -12,9 +12,9 @@ from evidence.validation.convergence import (
 )
 from evidence.validation.figures import convergence_runs as figures
 from vibroimpact.config.reading import check_config
-from vibroimpact.figures.drawing import save_plots
 from vibroimpact.io.job_log import redirect_output
 from vibroimpact.io.records import read_table, write_table
+from vibroimpact.reports.figures.drawing import save_plots
 
 redirect_output(snakemake.log[0])
 periods = convergence_period.period_rows(

@@ -3,10 +3,10 @@
 from pathlib import Path
 
 from evidence.validation.figures.prediction import prediction
-from vibroimpact.equivalent_support.linear_prediction import summary_rows
-from vibroimpact.figures.drawing import save_plots
+from evidence.validation.prediction.responses import summary_rows
 from vibroimpact.io.job_log import redirect_output
 from vibroimpact.io.records import read_table, write_table
+from vibroimpact.reports.figures.drawing import save_plots
 
 redirect_output(snakemake.log[0])
 rows = [row for path in snakemake.input.tables for row in read_table(path)]

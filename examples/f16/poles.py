@@ -16,13 +16,13 @@ from pathlib import Path
 import numpy as np
 from scipy.io import loadmat
 
+from vibroimpact.identify.linear.poles import frequency_of
 from vibroimpact.identify.lscf import NormalEquations
 from vibroimpact.identify.ods import deflection_shape
 from vibroimpact.identify.peak import LEVELS, find_peak, fit_peak
+from vibroimpact.identify.spectra.window_leakage import spectral_kernel
 from vibroimpact.identify.stabilisation import stabilisation_chart, stable_column
 from vibroimpact.io.records import write_table
-from vibroimpact.linear.poles import frequency_of
-from vibroimpact.spectra.window_leakage import spectral_kernel
 
 PERIOD_SAMPLES = 8192
 TRANSIENT_PERIODS = 1

@@ -9,8 +9,8 @@ import sys
 from pathlib import Path
 
 from vibroimpact.config.reading import read_yaml
+from vibroimpact.diagnosis.verdict.content import read_verdict
 from vibroimpact.io.records import write_table
-from vibroimpact.verdict.content import read_verdict
 
 # u = mass y'' + damping y' + stiffness y + quadratic y² + cubic y³, volts and seconds. Source: Noel
 # and Schoukens, Int. J. Control 2017.

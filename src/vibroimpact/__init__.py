@@ -6,63 +6,15 @@ imported when it is first used. Modules of the library and scripts of the workfl
 modules themselves, so that the workflow sees which files a stage depends on.
 """
 
+import re
 from importlib import import_module
+from pathlib import Path
 
 __version__ = "0.4.0"
 
-# Name -> module that defines it. The file __init__.pyi states the same for type checkers.
-PUBLIC = {
-    "Config": "config.schema",
-    "ConfigError": "config.problems",
-    "load_config": "config.reading",
-    "check_config": "config.reading",
-    "changed_config": "config.changed_keys",
-    "json_schema": "config.json_schema",
-    "build_model": "reduction.reduced_model",
-    "basis_frequency_errors": "reduction.basis_accuracy",
-    "read_model": "reduction.model_file",
-    "write_model": "reduction.model_file",
-    "Case": "study.cases",
-    "all_cases": "study.cases",
-    "cases_of_load": "study.cases",
-    "simulate_case": "study.in_process",
-    "identify_support": "study.in_process",
-    "run_study": "study.in_process",
-    "SupportEstimates": "study.support_estimates",
-    "simulate_cases": "study.simulation",
-    "statistics_rows": "study.statistics_table",
-    "case_spectra": "study.in_process",
-    "segment_spectra": "spectra.welch",
-    "psd_statistics": "spectra.welch",
-    "natural_frequencies": "linear.modes",
-    "frf": "linear.responses",
-    "identify_case": "identify.identify_case",
-    "Estimate": "identify.estimate",
-    "equivalent": "equivalent_support.study_answer",
-    "estimate_equivalent": "equivalent_support.estimate",
-    "equivalent_of": "measured_support.equivalent_of",
-    "MeasuredSupports": "measured_support.equivalent_of",
-    "EquivalentError": "equivalent_support.answer",
-    "point_springs": "equivalent_support.springs",
-    "springs_text": "equivalent_support.export_formats.registry",
-    "Channel": "campaign.file",
-    "Level": "campaign.file",
-    "CampaignError": "campaign.file",
-    "campaign_dataset": "campaign.file",
-    "read_campaign": "campaign.file",
-    "write_campaign": "campaign.file",
-    "check_campaign": "campaign.checks.file_checks",
-    "import_folder": "campaign.importing.assemble",
-    "diagnose": "diagnosis.diagnose",
-    "Verdict": "verdict.content",
-    "virtual_supports": "diagnosis.supports",
-    "stability": "flow.stability",
-    "flow_sweep": "study.flow_sweep",
-    "read_record": "io.records",
-    "write_record": "io.records",
-    "configurations": "study_folder.shared_files",
-    "workflow_snakefile": "study_folder.shared_files",
-}
+# Name -> module that defines it, as __init__.pyi states for type checkers.
+STUB = Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8")
+PUBLIC = {name: module for module, name in re.findall(r"from \.(\S+) import (\w+) as", STUB)}
 __all__ = ["__version__", *PUBLIC]
 
 

@@ -15,7 +15,7 @@ from vibroimpact import __version__, stability_command
 from vibroimpact.diagnosis import diagnose_command, supports_command
 from vibroimpact.equivalent_support.command import add_arguments
 from vibroimpact.equivalent_support.contact_export import command as contact_command
-from vibroimpact.wear import command as wear_command
+from vibroimpact.study.wear import command as wear_command
 
 # Read when numpy is first imported. The matrices are small: threads would wait for each other, and
 # take up to ten times the CPU. Runs are what is done side by side.
@@ -54,102 +54,8 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
-    check = commands.add_parser(
-        "check",
-        help="check a file and print every problem at once",
-        description="Check a study configuration (.yaml), a measured campaign (.nc), the"
-        " campaign.yaml of a folder of measurements, or the small file that asks for an identified"
-        " structure. Prints one line per problem, or one line that describes the file. The exit"
-        " code is 1 if there are problems.",
-    )
-    check.add_argument("file", metavar="FILE")
-    check.set_defaults(command=_check)
-    new = commands.add_parser(
-        "new",
-        help="lay out a folder for a study of your own",
-        description="Lay out a folder for a study of your own: a configuration to edit, a Snakefile"
-        " that uses the workflow of this package, profiles and a README. `snakemake -j2` runs it"
-        " there. Nothing that exists is overwritten.",
-    )
-    new.add_argument("folder", metavar="DIR", help="a folder that is empty or does not exist yet")
-    new.add_argument(
-        "--example",
-        metavar="NAME",
-        default="study",
-        help="the configuration to start from; a name that does not exist lists them (default:"
-        " study, the study of the paper)",
-    )
-    new.set_defaults(command=_new)
-    answer = commands.add_parser(
-        "equivalent",
-        help="print the equivalent k and c of a study at a load and gap, and export them",
-        description="Print the stiffness k and damping c that a linear model needs at the supports"
-        " at one load and gap: from a finished study, interpolated inside its grid, or as an"
-        " estimate without a simulation. The exit code is 1 if there is no answer, or if a k"
-        " or c is not resolved; unresolved values are never exported.",
-    )
-    add_arguments(answer)
-    diagnosis = commands.add_parser(
-        "diagnose",
-        help="name the effect that a model lacks, given a measured campaign",
-        description="Hold the model to the measured motion and name the effect that it lacks, its"
-        " place, its size and its probability. Prints one line per explanation that was fitted,"
-        " then the verdict. The exit code is 1 if the campaign can not be compared with the model.",
-    )
-    diagnose_command.add_arguments(diagnosis)
-    compare = commands.add_parser(
-        "compare",
-        help="hold measured frequency responses to the linear model",
-        description="Compare the modes of measured frequency responses with those of the linear"
-        " model, and which channels contradict it: swapped, reversed, or in another unit. The file"
-        " is a universal file with frequency responses (dataset 58, function type 4) of one force,"
-        " or of one accelerometer under a roving hammer, with its nodes; or a measured campaign,"
-        " of which the record of the lowest load is taken. Supports are taken without contact. The"
-        " exit code is 1 if nothing can be compared.",
-    )
-    compare.add_argument("file", metavar="FILE")
-    compare.add_argument("--model", metavar="FILE", required=True, help="configuration")
-    compare.set_defaults(command=_compare)
-    supports = commands.add_parser(
-        "supports",
-        help="print the contact forces at the supports of a measured structure, from its sensors",
-        description="Print values at each support in every record of a measured campaign, from"
-        " remote sensors: contact force, time in contact, impacts, wear work rate, secant stiffness"
-        " and damping. The model is held to the measured motion by dampers at the sensors; its"
-        " contact forces are then those of the structure. Measured contact forces are not used,"
-        " only compared. Values that can not be relied on state the reason. The exit code is 1 if"
-        " the campaign can not be compared with the model.",
-    )
-    supports_command.add_arguments(supports)
-    stability = commands.add_parser(
-        "stability",
-        help="print the critical velocities of a tube in a cross flow",
-        description="Print the ratio of the effective to the critical velocity of each mode of a"
-        " tube in a cross flow, with all its supports holding and without some of them; with a"
-        " fluid-elastic force also the velocity at which an eigenvalue begins to grow. The section"
-        " flow of the configuration gives velocities, density and criterion. Nothing is simulated,"
-        " unless --simulate asks for it.",
-    )
-    stability_command.add_arguments(stability)
-    wear = commands.add_parser(
-        "wear",
-        help="print the depth of wear at the supports of a finished study",
-        description="Print how deep each land of the supports wears the wall of the tube, from the"
-        " work rates of a finished study: Archard's law or the slowing law EDF_MZ, and the shape of"
-        " the support. One line per load and gap, for the land that wears deepest, as a range over"
-        " the laws; --csv writes all. The section wear of the study's configuration gives what no"
-        " argument gives.",
-    )
-    wear_command.add_arguments(wear)
-    contact = commands.add_parser(
-        "contact",
-        help="write the contact of the supports for another finite-element program",
-        description="Write gaps and contact stiffnesses of the supports of a configuration as"
-        " nonlinear elements of another program, at a gap of the case. For the equivalent linear"
-        " springs see `vibroimpact equivalent --export`. The exit code is 1 if a law is left"
-        " out.",
-    )
-    contact_command.add_arguments(contact)
+    for name, (declare, summary, description) in COMMANDS.items():
+        declare(commands.add_parser(name, help=summary, description=description))
     for name, command, what in (
         ("schema", _schema, "print the JSON schema of a study configuration"),
         ("reference", _reference, "print the reference of every configuration key as Markdown"),
@@ -210,7 +116,7 @@ def _compare(options: argparse.Namespace) -> int:
 
 def _new(options: argparse.Namespace) -> int:
     """Lay out a folder for a study. Return 1 if it can not be done."""
-    from vibroimpact.study_folder.new_study import NewStudyError, new_study
+    from vibroimpact.study.folder.new_study import NewStudyError, new_study
 
     try:
         files = new_study(options.folder, options.example)
@@ -429,3 +335,109 @@ def _structure_file(path: str) -> tuple[str | None, list[str]]:
 def _count(number: int, what: str) -> str:
     """Return "1 case", "2 cases"."""
     return f"{number} {what}{'' if number == 1 else 's'}"
+
+
+def _check_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", metavar="FILE")
+    parser.set_defaults(command=_check)
+
+
+def _new_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "folder", metavar="DIR", help="a folder that is empty or does not exist yet"
+    )
+    parser.add_argument(
+        "--example",
+        metavar="NAME",
+        default="study",
+        help="the configuration to start from; a name that does not exist lists them (default:"
+        " study, the study of the paper)",
+    )
+    parser.set_defaults(command=_new)
+
+
+def _compare_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", metavar="FILE")
+    parser.add_argument("--model", metavar="FILE", required=True, help="configuration")
+    parser.set_defaults(command=_compare)
+
+
+# Name -> (function that declares its arguments, help, description).
+COMMANDS = {
+    "check": (
+        _check_arguments,
+        "check a file and print every problem at once",
+        "Check a study configuration (.yaml), a measured campaign (.nc), the"
+        " campaign.yaml of a folder of measurements, or the small file that asks for an identified"
+        " structure. Prints one line per problem, or one line that describes the file. The exit"
+        " code is 1 if there are problems.",
+    ),
+    "new": (
+        _new_arguments,
+        "lay out a folder for a study of your own",
+        "Lay out a folder for a study of your own: a configuration to edit, a Snakefile"
+        " that uses the workflow of this package, profiles and a README. `snakemake -j2` runs it"
+        " there. Nothing that exists is overwritten.",
+    ),
+    "equivalent": (
+        add_arguments,
+        "print the equivalent k and c of a study at a load and gap, and export them",
+        "Print the stiffness k and damping c that a linear model needs at the supports"
+        " at one load and gap: from a finished study, interpolated inside its grid, or as an"
+        " estimate without a simulation. The exit code is 1 if there is no answer, or if a k"
+        " or c is not resolved; unresolved values are never exported.",
+    ),
+    "diagnose": (
+        diagnose_command.add_arguments,
+        "name the effect that a model lacks, given a measured campaign",
+        "Hold the model to the measured motion and name the effect that it lacks, its place, its"
+        " size and its probability. Prints one line per explanation that was fitted, then the"
+        " verdict. The exit code is 1 if the campaign can not be compared with the model.",
+    ),
+    "compare": (
+        _compare_arguments,
+        "hold measured frequency responses to the linear model",
+        "Compare the modes of measured frequency responses with those of the linear"
+        " model, and which channels contradict it: swapped, reversed, or in another unit. The file"
+        " is a universal file with frequency responses (dataset 58, function type 4) of one force,"
+        " or of one accelerometer under a roving hammer, with its nodes; or a measured campaign,"
+        " of which the record of the lowest load is taken. Supports are taken without contact. The"
+        " exit code is 1 if nothing can be compared.",
+    ),
+    "supports": (
+        supports_command.add_arguments,
+        "print the contact forces at the supports of a measured structure, from its sensors",
+        "Print values at each support in every record of a measured campaign, from remote sensors:"
+        " contact force, time in contact, impacts, wear work rate, secant stiffness and damping."
+        " The model is held to the measured motion by dampers at the sensors; its contact forces"
+        " are then those of the structure. Measured contact forces are not used, only compared."
+        " Values that can not be relied on state the reason. The exit code is 1 if the campaign"
+        " can not be compared with the model.",
+    ),
+    "stability": (
+        stability_command.add_arguments,
+        "print the critical velocities of a tube in a cross flow",
+        "Print the ratio of the effective to the critical velocity of each mode of a"
+        " tube in a cross flow, with all its supports holding and without some of them; with a"
+        " fluid-elastic force also the velocity at which an eigenvalue begins to grow. The section"
+        " flow of the configuration gives velocities, density and criterion. Nothing is simulated,"
+        " unless --simulate asks for it.",
+    ),
+    "wear": (
+        wear_command.add_arguments,
+        "print the depth of wear at the supports of a finished study",
+        "Print how deep each land of the supports wears the wall of the tube, from the"
+        " work rates of a finished study: Archard's law or the slowing law EDF_MZ, and the shape of"
+        " the support. One line per load and gap, for the land that wears deepest, as a range over"
+        " the laws; --csv writes all. The section wear of the study's configuration gives what no"
+        " argument gives.",
+    ),
+    "contact": (
+        contact_command.add_arguments,
+        "write the contact of the supports for another finite-element program",
+        "Write gaps and contact stiffnesses of the supports of a configuration as"
+        " nonlinear elements of another program, at a gap of the case. For the equivalent linear"
+        " springs see `vibroimpact equivalent --export`. The exit code is 1 if a law is left"
+        " out.",
+    ),
+}

@@ -120,8 +120,8 @@ def _aligned(cells: list[tuple[str, ...]]) -> list[str]:
 
 def _simulated(config: Config, folder: str | None) -> list[str]:
     """Return the lines of the tube with gaps; write its tables and figures into a folder."""
-    from .figures.flow_sweep import flow_sweep_figures
     from .io.records import write_table
+    from .reports.figures.flow_sweep import flow_sweep_figures
     from .study.flow_sweep import flow_sweep
 
     found = flow_sweep(config)
@@ -183,9 +183,9 @@ def _span(low: float, high: float) -> str:
 
 def _write(found: Stability, folder: Path) -> None:
     """Write the tables and the figure."""
-    from .figures.drawing import save_plots
-    from .figures.stability import stability_figure
     from .io.records import write_table
+    from .reports.figures.drawing import save_plots
+    from .reports.figures.stability import stability_figure
 
     folder.mkdir(parents=True, exist_ok=True)
     write_table([row.table_row() for row in found.rows], folder / "stability.csv")

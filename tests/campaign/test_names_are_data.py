@@ -8,10 +8,10 @@ from matplotlib.text import Text
 
 from tests.support.sound_campaign import sound_campaign
 from vibroimpact.campaign.importing.sidecar import read_sidecar
-from vibroimpact.figures.discrepancy.quicklook import quicklook
-from vibroimpact.figures.drawing import drawn
 from vibroimpact.io.records import read_table, write_table
 from vibroimpact.io.signal_files.signals import ImportProblem
+from vibroimpact.reports.figures.discrepancy.quicklook import quicklook
+from vibroimpact.reports.figures.drawing import drawn
 
 NAMES = ["=1+2", "+low", "-tip", "@shaker", "'=1", "''+x", "'x", "-", "plain", "-1.5", "\tx", "+ y"]
 

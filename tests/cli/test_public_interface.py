@@ -1,6 +1,5 @@
 """What `import vibroimpact` offers."""
 
-import ast
 import subprocess
 import sys
 from pathlib import Path
@@ -28,17 +27,6 @@ def test_a_name_that_is_not_public_is_an_attribute_error():
     with pytest.raises(AttributeError, match="no attribute 'load_confg'"):
         _ = vibroimpact.load_confg
     assert set(dir(vibroimpact)) == set(vibroimpact.__all__)
-
-
-def test_the_stub_states_the_same_names():
-    tree = ast.parse((PACKAGE / "__init__.pyi").read_text())
-    stated = {
-        alias.name: node.module
-        for node in tree.body
-        if isinstance(node, ast.ImportFrom)
-        for alias in node.names
-    }
-    assert stated == vibroimpact.PUBLIC
 
 
 def test_first_frequency_of_a_chain_from_the_public_names():

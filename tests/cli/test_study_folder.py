@@ -12,8 +12,8 @@ import yaml
 import vibroimpact
 from vibroimpact.cli import main
 from vibroimpact.config.reading import load_config
-from vibroimpact.study_folder import shared_files
-from vibroimpact.study_folder.new_study import NewStudyError, files_named, new_study
+from vibroimpact.study.folder import shared_files
+from vibroimpact.study.folder.new_study import NewStudyError, files_named, new_study
 
 ROOT = Path(__file__).parents[2]
 

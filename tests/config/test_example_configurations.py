@@ -9,8 +9,8 @@ import pytest
 from evidence.validation.reference.random_stops import exact_law
 from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.reading import load_config
+from vibroimpact.identify.linear.support_groups import reached_supports
 from vibroimpact.identify.secant import secant_support
-from vibroimpact.linear.support_groups import reached_supports
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.study.in_process import identify_support, simulate_case
 

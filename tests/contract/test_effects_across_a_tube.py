@@ -6,7 +6,6 @@ import pytest
 from evidence.truth.campaign import Plan
 from evidence.truth.geometry import Holder, Straight, Tube
 from evidence.truth.model_file import model_of
-from vibroimpact.effects.lateral_stinger import across_force
 from vibroimpact.effects.registry import EFFECTS
 
 FORCE_N = (2.0, 1.5)
@@ -77,16 +76,3 @@ def test_rod_holds_a_tube_along_an_oblique_force():
     found = rod.apply(values, {"stiffness": 1000.0, "damping": 2.0}, "along_force")
     (element,) = found["elements"][-1:]
     assert element["direction"] == pytest.approx([0.0, 0.6, 0.8])
-    assert not across_force(values, "along_force")
-
-
-@pytest.mark.parametrize(
-    ("force", "location", "wanted"),
-    [
-        ((0.0, 1.0, 0.0), "along_y", False),
-        ((0.0, 1.0, 0.0), "along_z", True),
-        ((0.0, 0.6, 0.8), "along_z", False),
-    ],
-)
-def test_rod_across_the_force_is_told(force, location, wanted):
-    assert across_force(values_of("x", force), location) == wanted

@@ -20,7 +20,7 @@ from vibroimpact.diagnosis.identified.linear_models import fit_family
 from vibroimpact.diagnosis.identified.records import usable_records
 from vibroimpact.diagnosis.identified.stated import own_units
 from vibroimpact.diagnosis.identified.structure_file import model_of
-from vibroimpact.verdict.content import Estimate, FoundEffect
+from vibroimpact.diagnosis.verdict.content import Estimate, FoundEffect
 
 ROOT = Path(__file__).resolve().parents[2]
 DATA = ROOT.parent / "shared" / "data"

@@ -8,7 +8,7 @@ import pytest
 from vibroimpact.diagnosis.decision import ambiguity, beside_spectra, decide
 from vibroimpact.diagnosis.explanations import Point, Term
 from vibroimpact.diagnosis.search import Hypothesis, Search
-from vibroimpact.verdict.misfit import closed_fraction
+from vibroimpact.diagnosis.verdict.misfit import closed_fraction
 
 VALUES = {"support_offset": (1e-5, 1e-5)}
 

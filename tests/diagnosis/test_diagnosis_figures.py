@@ -9,16 +9,21 @@ import xarray as xr
 
 from tests.support.discrepancy_results import made_up_verdict
 from tests.support.figure_layout import layout_faults
-from vibroimpact.figures.diagnosis.holding import chosen_channels, chosen_levels
-from vibroimpact.figures.diagnosis.law import force_error, median_law, pressed, telling_level
-from vibroimpact.figures.diagnosis.place import place_figure
-from vibroimpact.figures.diagnosis.psd import chosen_channels as channels_of_psd
-from vibroimpact.figures.diagnosis.psd import chosen_records, psd_figure
-from vibroimpact.figures.diagnosis.sheets import diagnosis_figures
-from vibroimpact.figures.drawing import drawn
-from vibroimpact.figures.style import tidy_log_axes
+from vibroimpact.diagnosis.verdict.content import CONCLUSIONS, FoundEffect
 from vibroimpact.reports.discrepancy_page import discrepancy_page
-from vibroimpact.verdict.content import CONCLUSIONS, FoundEffect
+from vibroimpact.reports.figures.diagnosis.holding import chosen_channels, chosen_levels
+from vibroimpact.reports.figures.diagnosis.law import (
+    force_error,
+    median_law,
+    pressed,
+    telling_level,
+)
+from vibroimpact.reports.figures.diagnosis.place import place_figure
+from vibroimpact.reports.figures.diagnosis.psd import chosen_channels as channels_of_psd
+from vibroimpact.reports.figures.diagnosis.psd import chosen_records, psd_figure
+from vibroimpact.reports.figures.diagnosis.sheets import diagnosis_figures
+from vibroimpact.reports.figures.drawing import drawn
+from vibroimpact.reports.figures.style import tidy_log_axes
 
 GAP_M, STIFFNESS = 3.0e-4, 1.0e6
 RATE_HZ = 2048.0
@@ -173,7 +178,7 @@ def test_no_text_is_cut_or_covered(size):
     faults = {
         sheet.name: layout_faults(sheet.figure)
         for sheet in sheets
-        if sheet.name != "diagnosis_place"  # of tests/figures/test_figure_layout
+        if sheet.name != "diagnosis_place"  # of tests/reports/test_figure_layout
     }
     assert {name: found for name, found in faults.items() if found} == {}
 

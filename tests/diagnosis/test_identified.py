@@ -25,11 +25,11 @@ from vibroimpact.diagnosis.identified.identified import identified
 from vibroimpact.diagnosis.identified.levels import long_record_lines
 from vibroimpact.diagnosis.identified.records import unsettled_periods
 from vibroimpact.diagnosis.identified.trial import Trial
-from vibroimpact.figures.diagnosis.sheets import diagnosis_figures
-from vibroimpact.figures.drawing import drawn
+from vibroimpact.diagnosis.verdict.content import read_verdict
 from vibroimpact.io.records import read_record, read_table
 from vibroimpact.reduction.reduced_model import build_model
-from vibroimpact.verdict.content import read_verdict
+from vibroimpact.reports.figures.diagnosis.sheets import diagnosis_figures
+from vibroimpact.reports.figures.drawing import drawn
 
 FEW = ("cubic_stiffness", "clearance", "single_friction", "saturation_stiffness", "quadratic_drag")
 STATED = MeasuredStructure(

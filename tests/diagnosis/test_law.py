@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from vibroimpact.contact.laws import LocalLaws
 from vibroimpact.diagnosis.law import (
     SEEN,
     Places,
@@ -14,6 +13,7 @@ from vibroimpact.diagnosis.law import (
     places_of,
     receptances,
 )
+from vibroimpact.structure.contact.laws import LocalLaws
 
 STIFFNESS = 3.0e4  # N/m, of a spring along each direction of each support
 DAMPING = 20.0  # N s/m

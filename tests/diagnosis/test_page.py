@@ -7,12 +7,12 @@ import pytest
 
 from tests.support.discrepancy_results import made_up_verdict
 from vibroimpact.diagnosis.diagnose_command import summary
-from vibroimpact.figures.diagnosis.ranking import ranking_figure
+from vibroimpact.diagnosis.verdict.content import CONCLUSIONS
 from vibroimpact.io.display_units import display_unit
 from vibroimpact.reports.discrepancy_page import discrepancy_page
 from vibroimpact.reports.explanations import best_places, explanations_of
+from vibroimpact.reports.figures.diagnosis.ranking import ranking_figure
 from vibroimpact.reports.verdict_words import verdict_sentence
-from vibroimpact.verdict.content import CONCLUSIONS
 
 
 def test_closest_effect_is_shown_if_nothing_is_named():

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from vibroimpact.figures.diagnosis.place import Places
+from vibroimpact.reports.figures.diagnosis.place import Places
 
 QUARTER = np.linspace(0.0, 0.5 * np.pi, 400)
 BEND = np.stack([np.sin(QUARTER), 0.0 * QUARTER, 1.0 - np.cos(QUARTER)], axis=1)

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tomllib
 
+import pytest
 import yaml
 
 import vibroimpact
@@ -19,10 +20,10 @@ CONTAINERFILE = (ROOT / "Containerfile").read_text(encoding="utf-8")
 CONDA_NAMES = {"snakemake-minimal": "snakemake"}  # conda's name: that of the package index
 
 
-def requirements():
-    """{lower-case name: version} of requirements.in."""
-    text = (ROOT / "requirements.in").read_text(encoding="utf-8")
-    return {name.lower(): version for name, version in re.findall(r"^(\S+)==(\S+)$", text, re.M)}
+def pins_of(file):
+    """{lower-case name: version} of a file of requirements or a lock."""
+    text = (ROOT / file).read_text(encoding="utf-8")
+    return {name.lower(): version for name, version in re.findall(r"^(\S+)==(\S+)", text, re.M)}
 
 
 def environment_pins():
@@ -55,13 +56,31 @@ def test_citation_and_build_name_the_same_license():
 def test_conda_has_the_versions_of_the_requirements():
     pins = environment_pins()
     python = pins.pop("python")
-    assert pins == requirements() and len(pins) > 20
+    assert pins == pins_of("requirements.in") and len(pins) > 20
     assert PROJECT["project"]["requires-python"] == f">={python}"
+
+
+@pytest.mark.parametrize("lock", sorted(ROOT.glob("requirements-*.lock")), ids=lambda at: at.stem)
+def test_a_lock_holds_what_it_adds_to_the_base(lock):
+    first, *rest = lock.read_text(encoding="utf-8").splitlines()
+    names = [line.split("==")[0] for line in rest if re.match(r"\S+==", line)]
+    base = pins_of("requirements.lock")
+    wanted = pins_of(lock.with_suffix(".in").name)
+    assert first == "-r requirements.lock" and names and not set(names) & set(base)
+    assert {name.replace("_", "-"): version for name, version in wanted.items()}.items() <= (
+        pins_of(lock.name).items()
+    )
+
+
+def test_files_of_requirements_pin_a_package_alike():
+    pins = [pins_of(file.name) for file in ROOT.glob("requirements*.in")]
+    versions = {(name, version) for each in pins for name, version in each.items()}
+    assert len(versions) == len({name for name, _ in versions}) > 30
 
 
 def test_every_dependency_of_the_wheel_is_pinned():
     names = {re.match(r"[\w-]+", entry)[0].lower() for entry in PROJECT["project"]["dependencies"]}
-    assert names - set(requirements()) == set() and len(names) > 5
+    assert names - set(pins_of("requirements.in")) == set() and len(names) > 5
 
 
 def test_the_container_installs_pinned_and_drops_root():

@@ -5,6 +5,7 @@ import pytest
 import yaml
 
 from evidence.validation.prediction.law_errors import error_rows, tube_rows
+from evidence.validation.prediction.laws import EquivalentLaw, fit_displacement_law, law_text
 from tests.conftest import ROOT
 from vibroimpact import (
     EquivalentError,
@@ -16,13 +17,11 @@ from vibroimpact import (
 from vibroimpact.config.yaml_file import read_yaml
 from vibroimpact.equivalent_support.displacement_law import (
     DisplacementLaw,
-    fit_displacement_law,
     held_tube,
 )
-from vibroimpact.equivalent_support.law_file import LAW_FILE, law_text, shipped_law
-from vibroimpact.equivalent_support.scaled_law import EquivalentLaw
+from vibroimpact.equivalent_support.law_file import LAW_FILE, shipped_law
+from vibroimpact.identify.linear.responses import frf
 from vibroimpact.io.records import read_table
-from vibroimpact.linear.responses import frf
 from vibroimpact.study.method_agreement import COMPARED
 
 BAND = (5.0, 200.0)

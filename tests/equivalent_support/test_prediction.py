@@ -5,15 +5,18 @@ make the table.
 import numpy as np
 import pytest
 
-from vibroimpact.equivalent_support.linear_prediction import (
+from evidence.validation.prediction.laws import fit_law, free_level, plate_stiffness
+from evidence.validation.prediction.responses import (
     amplified,
-    expected_peak_factor,
     linear_response,
     prediction_rows,
     summary_rows,
+    synthesise_records,
 )
-from vibroimpact.equivalent_support.scaled_law import fit_law, free_level, plate_stiffness
-from vibroimpact.linear.responses import frf, synthesise_records
+from vibroimpact.equivalent_support.linear_prediction import (
+    expected_peak_factor,
+)
+from vibroimpact.identify.linear.responses import frf
 
 BAND = (5.0, 200.0)
 

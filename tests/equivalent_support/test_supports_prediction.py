@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from evidence.validation.prediction.responses import linear_response
 from tests.physics.test_identification_of_supports import structure
-from vibroimpact.equivalent_support.linear_prediction import linear_response
 from vibroimpact.equivalent_support.supports_prediction import (
     EACH,
     ONE,
@@ -15,7 +15,7 @@ from vibroimpact.equivalent_support.supports_prediction import (
     supports_prediction_rows,
     supports_response,
 )
-from vibroimpact.linear.support_groups import support_directions
+from vibroimpact.identify.linear.support_groups import support_directions
 
 BAND, LOAD = (2.0, 60.0), 3.0
 TRUTH = {"plate_1": (2.0e5, 60.0), "plate_2": (3.0e4, 20.0), "plate_3": (0.0, 0.0)}

@@ -10,8 +10,8 @@ import pytest
 from evidence.validation.claims import equivalence, poles, response, shapes
 from evidence.validation.claims.claim import CONDITIONS, FAILS, HOLDS
 from evidence.validation.study_curves import POLES, STIFFNESS, StudyCurves
-from vibroimpact.linear.poles import first_pole
-from vibroimpact.linear.responses import frf, psd_family
+from vibroimpact.identify.linear.poles import first_pole
+from vibroimpact.identify.linear.responses import frf, psd_family
 
 LOAD = np.geomspace(0.1, 20.0, 20)
 SEEDS = 3

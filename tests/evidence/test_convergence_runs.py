@@ -18,7 +18,7 @@ from evidence.validation.convergence.statistics import (
     statistics_rows,
 )
 from vibroimpact.integration.batch import Schedule
-from vibroimpact.study.simulation import seed_force
+from vibroimpact.study.simulation import seed_forces
 
 SHORT = {
     "record.duration_s": 5.0,
@@ -62,7 +62,9 @@ def test_a_seed_has_the_same_force_at_every_step(study_config):
             run.record.duration_s,
         )
         first = round(schedule.start_up * rate) + 1
-        forces.append(seed_force(run, schedule, 0).values(first, 16 * rate)[:: rate // 25600])
+        forces.append(
+            seed_forces(run, schedule, 0, 1)[0].values(first, 16 * rate)[:: rate // 25600]
+        )
     assert all(np.sqrt(np.mean((force - forces[-1]) ** 2)) < 0.03 for force in forces)
 
 

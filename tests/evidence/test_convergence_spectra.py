@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from evidence.validation.convergence import impacts, spectra
-from vibroimpact.spectra.window_leakage import spectral_kernel
+from vibroimpact.identify.spectra.window_leakage import spectral_kernel
 
 
 def test_published_degrees_of_freedom():

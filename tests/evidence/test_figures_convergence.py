@@ -18,8 +18,8 @@ from evidence.validation.figures import (
 from evidence.validation.figures import (
     convergence_spectra as validation_convergence_spectra,
 )
-from vibroimpact.figures import drawing
-from vibroimpact.figures.style import COLUMNS, shown
+from vibroimpact.reports.figures import drawing
+from vibroimpact.reports.figures.style import COLUMNS, shown
 
 NAMES = (
     "validation_convergence_mesh",

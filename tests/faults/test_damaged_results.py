@@ -10,8 +10,7 @@ from vibroimpact.campaign.file import read_campaign
 from vibroimpact.config.stage_keys import answer_digest
 from vibroimpact.io.records import (
     RecordError,
-    read_dataset,
-    read_json,
+    read_given_dataset,
     read_record,
     read_table,
     write_record,
@@ -166,14 +165,8 @@ def test_statistics_refuse_a_foreign_record(study):
 def test_a_broken_campaign_is_never_to_be_deleted(study, damage, reliability):
     path = Path(study.path("synthetic_campaign.nc"))
     damage(path)
-    for read in (read_campaign, read_dataset):
+    for read in (read_campaign, read_given_dataset):
         with pytest.raises(RecordError, match="campaign.nc: can ?not be read") as refusal:
             read(path)
         assert "delete" not in str(refusal.value)
     reliability.fault("a measured campaign is cut or empty", "refused; never told to delete it")
-
-
-def test_a_broken_json_result_is_refused(tmp_path):
-    (tmp_path / "study.json").write_text('{"candidates": [')
-    with pytest.raises(RecordError, match=f"study.json: is not JSON.*{REMEDY}"):
-        read_json(tmp_path / "study.json")

@@ -8,8 +8,8 @@ import pytest
 import vibroimpact as vi
 from tests.flow.test_in_time import CRITICAL, GAP, QUASI_STEADY, in_flow, stopped
 from vibroimpact.cli import main
-from vibroimpact.figures.flow_sweep import flow_sweep_figures
 from vibroimpact.flow.limit_cycle import ModelInFlow, describing_stiffness
+from vibroimpact.reports.figures.flow_sweep import flow_sweep_figures
 from vibroimpact.study.flow_sweep import (
     Equivalent,
     FlowRun,

@@ -17,7 +17,7 @@ from vibroimpact.identify.segment_scatter import (
     segment_covariance,
     widened,
 )
-from vibroimpact.spectra.window_leakage import spectral_kernel
+from vibroimpact.identify.spectra.window_leakage import spectral_kernel
 
 RANGE = (1.0e3, 1.0e8)
 

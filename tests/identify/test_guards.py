@@ -14,16 +14,16 @@ from tests.support.made_up_study import made_up_config
 from tests.support.tiny_study import tiny_values
 from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.reading import check_config, load_config
-from vibroimpact.figures.study.checks import limits
 from vibroimpact.identify.estimate import Estimate, table_rows, unresolved
 from vibroimpact.identify.guards import beyond_checked, guarded
 from vibroimpact.identify.identify_case import identify_case, reference_tube
+from vibroimpact.identify.linear.responses import frf
 from vibroimpact.identify.reference_tube import STABLE_FRACTION
 from vibroimpact.identify.support_fit import Start, SupportSearch
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.energy_limit import energy_flag
 from vibroimpact.io.records import write_table
-from vibroimpact.linear.responses import frf
+from vibroimpact.reports.figures.study.checks import limits
 from vibroimpact.reports.study_statistics import StudyStatistics
 from vibroimpact.reports.study_words import energy_sentences
 from vibroimpact.study.agreement_dataset import consistency_dataset

@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 
 from vibroimpact.identify.half_spectra import half_spectra, lag_window
+from vibroimpact.identify.linear.poles import frequency_of, pole_of
 from vibroimpact.identify.lscf import NormalEquations
 from vibroimpact.identify.operational_pole import (
     PoleSearch,
     cramer_rao_covariance,
     operational_pole,
 )
+from vibroimpact.identify.spectra.window_leakage import window_autocorrelation
 from vibroimpact.identify.stabilisation import (
     StabilisationChart,
     first_stable_order,
@@ -19,8 +21,6 @@ from vibroimpact.identify.stabilisation import (
     stabilisation_chart,
     stable_column,
 )
-from vibroimpact.linear.poles import frequency_of, pole_of
-from vibroimpact.spectra.window_leakage import window_autocorrelation
 
 FREQUENCIES = np.array([12.0, 21.0, 33.0])
 RATIOS = np.array([0.01, 0.025, 0.004])

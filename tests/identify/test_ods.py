@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from vibroimpact.identify.broadband import family_map, identify_broadband
+from vibroimpact.identify.linear.family import LinearFamily, driven_modes
+from vibroimpact.identify.linear.poles import first_pole, frequency_of
+from vibroimpact.identify.linear.responses import frf
 from vibroimpact.identify.ods import deflection_shape, linear_ods, mac, match_shape
 from vibroimpact.identify.peak import level_edges
 from vibroimpact.identify.reference_tube import Bins, ReferenceTube, Sensors
-from vibroimpact.linear.family import LinearFamily, driven_modes
-from vibroimpact.linear.poles import first_pole, frequency_of
-from vibroimpact.linear.responses import frf
-from vibroimpact.spectra.window_leakage import spectral_kernel
+from vibroimpact.identify.spectra.window_leakage import spectral_kernel
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,7 @@ from vibroimpact.identify.peak import (
     level_edges,
     resonance,
 )
-from vibroimpact.spectra.window_leakage import spectral_kernel
+from vibroimpact.identify.spectra.window_leakage import spectral_kernel
 
 FREQUENCY = np.arange(0, 601) * 0.1
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from vibroimpact.contact.laws import ContactLaws
 from vibroimpact.identify.secant import secant_support, symmetric
+from vibroimpact.structure.contact.laws import ContactLaws
 
 SUPPORT = np.repeat([0, 1], 5)
 WEIGHT = np.full(10, 0.2)

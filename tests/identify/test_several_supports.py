@@ -5,11 +5,11 @@ import pytest
 
 from vibroimpact.identify.graded_supports import MethodResult, graded_supports
 from vibroimpact.identify.information import what_is_known
+from vibroimpact.identify.linear.poles import first_pole, frequency_of
+from vibroimpact.identify.linear.support_groups import grouped_supports, reached_supports
+from vibroimpact.identify.linear.supported_structure import SupportedStructure
 from vibroimpact.identify.pole_step import step_to_pole
 from vibroimpact.identify.support_fit import SupportSearch, inverse_information
-from vibroimpact.linear.poles import first_pole, frequency_of
-from vibroimpact.linear.support_groups import grouped_supports, reached_supports
-from vibroimpact.linear.supported_structure import SupportedStructure
 
 NAMES = ("left.y", "right.y")
 

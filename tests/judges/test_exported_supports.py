@@ -15,7 +15,7 @@ from evidence.validation.judges.presence import JudgeAbsent, calculix, opensees
 from vibroimpact.equivalent_support.answer import Answer, GroupAnswer, Span
 from vibroimpact.equivalent_support.export_formats.registry import springs_text
 from vibroimpact.equivalent_support.springs import point_springs
-from vibroimpact.linear.modes import natural_frequencies
+from vibroimpact.identify.linear.modes import natural_frequencies
 
 K, C = 8.0e4, 210.0
 # pyNastran needs an older numpy than the library: a Python of another environment that has it.

@@ -16,7 +16,7 @@ from vibroimpact.diagnosis.measurement.signals import signals_of
 from vibroimpact.diagnosis.measurement.simulated_records import simulate_records
 from vibroimpact.diagnosis.measurement.stretches import whole_rates
 from vibroimpact.excitation.random_force import band_limited_noise
-from vibroimpact.linear.responses import frf
+from vibroimpact.identify.linear.responses import frf
 from vibroimpact.reduction.reduced_model import build_model
 
 RATE, GAP = 2048.0, 2.8886e-4

@@ -9,11 +9,11 @@ from scipy.sparse.linalg import spsolve
 
 from evidence.validation.reference.frequencies import ROOTS
 from tests.support.straight_path import straight_path
+from vibroimpact.config.materials.fluids import fluid_properties
 from vibroimpact.config.reading import check_config
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.effects.fluid_added_mass_damping import EFFECT
 from vibroimpact.excitation.force_vectors import force_vector
-from vibroimpact.materials.fluids import fluid_properties
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.structure.fluid import (
     added_mass_coefficients,

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from vibroimpact import Case, build_model, check_config, simulate_cases
-from vibroimpact.contact.laws import ContactLaws, LocalLaws
 from vibroimpact.equivalent_support import homogeneity
 from vibroimpact.equivalent_support.homogeneity import effects_with_a_scale
+from vibroimpact.structure.contact.laws import ContactLaws, LocalLaws
 
 SUPPORT = {"name": "stop", "point": "mass", "stiffness_N_per_m": 1.0e6}
 ELEMENT = {"name": "joint", "point": "mass", "direction": [1.0, 0.0, 0.0]}

@@ -10,8 +10,8 @@ import pytest
 
 from tests.support.linear_records import LinearRecords, statistics
 from vibroimpact.identify.identify_case import identify_case
-from vibroimpact.linear.poles import first_pole
-from vibroimpact.linear.responses import frf
+from vibroimpact.identify.linear.poles import first_pole
+from vibroimpact.identify.linear.responses import frf
 
 DOUBLING = {
     1.0e3: 28.0656,

@@ -13,11 +13,11 @@ from tests.support.linear_records import LinearRecords, statistics
 from vibroimpact.config.reading import check_config
 from vibroimpact.identify.estimate import table_rows
 from vibroimpact.identify.identify_case import identify_case
-from vibroimpact.linear.responses import frf
-from vibroimpact.linear.support_groups import reached_supports, support_directions
-from vibroimpact.linear.supported_structure import SupportedStructure
+from vibroimpact.identify.linear.responses import frf
+from vibroimpact.identify.linear.support_groups import reached_supports, support_directions
+from vibroimpact.identify.linear.supported_structure import SupportedStructure
+from vibroimpact.identify.spectra.welch import complex_values
 from vibroimpact.reduction.reduced_model import build_model
-from vibroimpact.spectra.welch import complex_values
 from vibroimpact.study.case_spectra import case_spectra
 from vibroimpact.study.cases import all_cases
 from vibroimpact.study.equivalent_table import equivalent_rows

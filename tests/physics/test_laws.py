@@ -7,10 +7,10 @@ import pytest
 from scipy.special import ellipk
 
 from tests.support.oscillator import oscillator
-from vibroimpact.contact.laws import ContactLaws, LocalLaws
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.integration.batch import Schedule, integrate_batch
 from vibroimpact.integration.every_step import integrate_every_step
+from vibroimpact.structure.contact.laws import ContactLaws, LocalLaws
 
 RATE = 100_000
 RUN = {}  # the scheme of the test

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from scipy import optimize
 
+from evidence.validation.prediction.responses import synthesise_records
 from vibroimpact.config.reading import load_config
-from vibroimpact.linear import responses
-from vibroimpact.linear.modes import first_mode_shape, natural_frequencies
-from vibroimpact.linear.poles import first_pole, pole_sensitivity, support_from_pole
-from vibroimpact.linear.responses import frf, psd_family, synthesise_records
+from vibroimpact.identify.linear import responses
+from vibroimpact.identify.linear.modes import first_mode_shape, natural_frequencies
+from vibroimpact.identify.linear.poles import first_pole, support_from_pole
+from vibroimpact.identify.linear.responses import frf, psd_family
 from vibroimpact.reduction.reduced_model import build_model
 
 STUDY = load_config(Path(__file__).resolve().parents[2] / "config" / "study.yaml")
@@ -119,11 +120,8 @@ def test_natural_frequencies_are_the_dense_ones(model):
 
 @pytest.mark.parametrize("k, c", SUPPORTS)
 def test_first_pole_is_the_lowest_pole_of_the_dense_problem(model, k, c):
-    pole, sensitivity = first_pole(model, k, c), pole_sensitivity(model, k, c)
+    pole = first_pole(model, k, c)
     assert abs(dense_poles(model, k, c)[0] - pole) < 1e-8 * abs(pole)
-    for number, (dk, dc) in enumerate(((1.0, 0.0), (0.0, 1e-3))):
-        change = first_pole(model, k + dk, c + dc) - first_pole(model, k - dk, c - dc)
-        assert change / (2.0 * (dk + dc)) == pytest.approx(sensitivity[number], rel=1e-4)
 
 
 def test_very_strong_damper_acts_as_a_clamp(model):

@@ -19,9 +19,9 @@ from vibroimpact.campaign.file import (
 )
 from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.reading import load_config
+from vibroimpact.equivalent_support.measured.equivalent_of import equivalent_of
 from vibroimpact.identify.estimate import table_rows
 from vibroimpact.identify.identify_case import identify_case
-from vibroimpact.measured_support.equivalent_of import equivalent_of
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.study.case_spectra import case_spectra
 from vibroimpact.study.cases import all_cases

@@ -5,10 +5,10 @@ and a cubic backbone.
 import numpy as np
 import pytest
 
-from vibroimpact.contact.laws import LocalLaws
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.steady_response import PeriodicDrive, steady_elements
 from vibroimpact.reduction.modal_structure import IdentifiedModes, modal_model
+from vibroimpact.structure.contact.laws import LocalLaws
 
 PERIOD, STEPS = 4.0, 16000
 

@@ -18,10 +18,10 @@ from vibroimpact.excitation.force_stream import normalised_force
 from vibroimpact.excitation.force_vectors import line_load
 from vibroimpact.excitation.line_force_spectrum import line_force_psd, line_force_rms
 from vibroimpact.excitation.turbulence import drive_shapes, load_of_spectrum
-from vibroimpact.linear.responses import response_psd
+from vibroimpact.identify.linear.responses import response_psd
+from vibroimpact.identify.spectra.welch import psd_statistics, segment_spectra
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.reduction.ritz_basis import eigenmodes, uncoupled_groups
-from vibroimpact.spectra.welch import psd_statistics, segment_spectra
 from vibroimpact.study.cases import Case
 from vibroimpact.study.simulation import simulate_cases
 

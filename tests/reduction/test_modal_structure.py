@@ -8,7 +8,7 @@ from scipy import linalg, sparse
 
 from tests.support import joint
 from vibroimpact.config.reading import ConfigError, check_config
-from vibroimpact.linear.responses import frf
+from vibroimpact.identify.linear.responses import frf
 from vibroimpact.reduction.modal_structure import IdentifiedModes, modal_model
 from vibroimpact.reduction.reduced_model import build_model
 

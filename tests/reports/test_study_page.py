@@ -17,16 +17,16 @@ from PIL import Image
 from tests.support.made_up_study import GAPS, LOADS, MadeUpStudy, equivalent_rows, made_up_config
 from vibroimpact.config.reading import check_config, load_config
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.figures.interactive.equivalent import equivalent_plots
-from vibroimpact.figures.interactive.pictures import few_colours
-from vibroimpact.figures.interactive.shape import contact_along_plot, shapes_of
-from vibroimpact.figures.interactive.spectrum import band_of, blocks_of, spectra_of_series
-from vibroimpact.figures.interactive.study_plots import MOST_FRAMES, shown_loads
 from vibroimpact.io.records import read_record, write_record
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.reports.captions import CATEGORIES, CaptionError, read_caption
 from vibroimpact.reports.centred_wear import centred_sentence
 from vibroimpact.reports.equivalent_answer import Answer, Value
+from vibroimpact.reports.figures.interactive.equivalent import equivalent_plots
+from vibroimpact.reports.figures.interactive.pictures import few_colours
+from vibroimpact.reports.figures.interactive.shape import contact_along_plot, shapes_of
+from vibroimpact.reports.figures.interactive.spectrum import band_of, blocks_of, spectra_of_series
+from vibroimpact.reports.figures.interactive.study_plots import MOST_FRAMES, shown_loads
 from vibroimpact.reports.study_statistics import study_statistics
 from vibroimpact.reports.study_tables import answer_table, reason_table
 from vibroimpact.reports.study_words import (

@@ -8,8 +8,8 @@ from scipy import io, sparse
 from scipy.integrate import solve_ivp
 
 from vibroimpact.config.reading import ConfigError, check_config
-from vibroimpact.contact.local_elements import split_damping
 from vibroimpact.reduction.reduced_model import build_model
+from vibroimpact.structure.contact.local_elements import split_damping
 from vibroimpact.structure.matrix_files import MatrixFileError, read_matrix
 from vibroimpact.structure.point_structure import build_point_structure
 from vibroimpact.study.cases import all_cases

@@ -7,10 +7,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from vibroimpact.figures.drawing import drawn
-from vibroimpact.figures.study.timing import timing
 from vibroimpact.io.records import RecordError
 from vibroimpact.io.stopwatch import Stopwatch, seconds_in
+from vibroimpact.reports.figures.drawing import drawn
+from vibroimpact.reports.figures.study.timing import timing
 from vibroimpact.study.timing import study_timing, timing_so_far
 
 HEADER = "s\th:m:s\tmax_rss\tmax_vms\tmax_uss\tmax_pss\tio_in\tio_out\tmean_load\tcpu_time"

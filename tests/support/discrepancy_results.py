@@ -4,7 +4,7 @@ in a tube that has none in its model.
 
 import numpy as np
 
-from vibroimpact.verdict.content import Verdict
+from vibroimpact.diagnosis.verdict.content import Verdict
 
 CHANNELS = [
     "apex_y",

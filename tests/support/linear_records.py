@@ -6,8 +6,8 @@ import xarray as xr
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.excitation.random_streams import random_generator
 from vibroimpact.identify.secant import MOMENTS
-from vibroimpact.spectra.welch import highest_kept_frequency_Hz
-from vibroimpact.spectra.window_leakage import spectral_kernel
+from vibroimpact.identify.spectra.welch import highest_kept_frequency_Hz
+from vibroimpact.identify.spectra.window_leakage import spectral_kernel
 from vibroimpact.study.case_spectra import case_spectra
 
 STREAM = "chain"

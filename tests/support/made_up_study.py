@@ -11,10 +11,10 @@ import xarray as xr
 from vibroimpact.config.reading import load_config
 from vibroimpact.config.stage_keys import stage_params
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.figures.interactive.study_plots import StudyFiles, study_plots
-from vibroimpact.figures.study.checks import limits
 from vibroimpact.reports.captions import Caption
 from vibroimpact.reports.equivalent_answer import answers
+from vibroimpact.reports.figures.interactive.study_plots import StudyFiles, study_plots
+from vibroimpact.reports.figures.study.checks import limits
 from vibroimpact.reports.study_content import StudyContent, provenance
 from vibroimpact.reports.study_page import Picture, study_page
 from vibroimpact.reports.study_statistics import study_statistics

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
-from vibroimpact.linear.responses import frf
+from vibroimpact.identify.linear.responses import frf
 
 Y = (0.0, 1.0, 0.0)
 NOISE = 0.01  # of the RMS of each channel

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from vibroimpact.contact.laws import ContactLaws, LocalLaws
 from vibroimpact.reduction.modal_model import ModalModel
+from vibroimpact.structure.contact.laws import ContactLaws, LocalLaws
 
 
 def oscillator(

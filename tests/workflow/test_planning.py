@@ -18,7 +18,7 @@ cli.main(sys.argv[1:])
 # What checks of a configuration need (materials and geometry of a tube), names of cases and
 # captions, and digests.
 LIGHT = ("config", "geometry", "materials", "io.provenance", "io.whole_file", "reports.captions")
-LIGHT += ("study.cases", "study_folder.shared_files")
+LIGHT += ("study.cases", "study.folder.shared_files")
 
 
 @pytest.fixture(scope="module")

@@ -246,7 +246,7 @@ def test_a_terminal_shows_a_bar_and_a_pipe_plain_lines(study):
 @pytest.mark.parametrize(
     ("file", "expected"),
     [
-        ("spectra/welch.py", {"spectra"} | AFTER_SPECTRA),
+        ("identify/spectra/welch.py", {"spectra"} | AFTER_SPECTRA),
         (
             "reduction/reduced_model.py",
             {"basis", "simulate", "synthetic_campaign", "spectra"} | AFTER_SPECTRA | FIGURES,
@@ -302,7 +302,7 @@ def test_the_timing_is_made_on_request_from_all_jobs(study):
 @pytest.mark.slow
 def test_edited_figure_or_method_reruns_no_simulation(study):
     after_figure = {"figures_identification", "study_page", "all"}
-    assert study.plan_after_edit("figures/study/shapes.py") == after_figure
+    assert study.plan_after_edit("reports/figures/study/shapes.py") == after_figure
     assert study.plan_after_edit("identify/lscf.py") == {
         "identify",
         "consistency",

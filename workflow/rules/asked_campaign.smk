@@ -47,7 +47,7 @@ def asked_campaign(wildcards):
 
 def measured_campaign(wildcards):
     """The file of --config equivalent_of=FILE; it may hold no force."""
-    from vibroimpact.measured_support.usable import identification_problems
+    from vibroimpact.equivalent_support.measured.usable import identification_problems
 
     file = requested("equivalent_of", "FILE.nc")(wildcards)
     if WITHOUT_MODEL:

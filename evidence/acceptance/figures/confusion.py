@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.patches import Rectangle
 
-from vibroimpact.figures.sheet import Sheet
-from vibroimpact.figures.style import BLACK, GREY
-from vibroimpact.verdict.content import CONCLUSIONS
+from vibroimpact.diagnosis.verdict.content import CONCLUSIONS
+from vibroimpact.reports.figures.sheet import Sheet
+from vibroimpact.reports.figures.style import BLACK, GREY
 
 GROUPS = ("nothing", "in the catalogue", "another law", "fault", "stranger")
 RIGHT_PAIR = "the right pair"

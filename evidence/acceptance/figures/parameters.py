@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.figures.sheet import Sheet
-from vibroimpact.figures.style import BLACK, BLUE, RED, label_of
+from vibroimpact.reports.figures.sheet import Sheet
+from vibroimpact.reports.figures.style import BLACK, BLUE, RED, label_of
 
 WIDE = 4.0  # ratio of the ends from which on the axis is logarithmic
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.lines import Line2D
 
-from vibroimpact.figures.sheet import Sheet
-from vibroimpact.figures.style import BLACK, BLUE, GREY, ORANGE, label_of, shown
+from vibroimpact.reports.figures.sheet import Sheet
+from vibroimpact.reports.figures.style import BLACK, BLUE, GREY, ORANGE, label_of, shown
 
 STANDINGS = {"met": ("target met", BLUE, "o"), "missed": ("target missed", ORANGE, "D")}
 TARGET = {"marker": "|", "color": BLACK, "markersize": 15, "markeredgewidth": 2.0}

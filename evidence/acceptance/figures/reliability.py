@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from evidence.acceptance.calibration import FEWEST, largest_gap
-from vibroimpact.figures.sheet import Sheet
-from vibroimpact.figures.style import BLUE, GREY, label_of
+from vibroimpact.reports.figures.sheet import Sheet
+from vibroimpact.reports.figures.style import BLUE, GREY, label_of
 
 
 def reliability_figure(curve):

@@ -14,8 +14,8 @@ from evidence.acceptance.detection_limit import (
     single_effects,
 )
 from evidence.acceptance.intervals import wilson
-from vibroimpact.figures.sheet import Sheet
-from vibroimpact.figures.style import BLACK, BLUE, GREEN, RED, label_of, number, shown
+from vibroimpact.reports.figures.sheet import Sheet
+from vibroimpact.reports.figures.style import BLACK, BLUE, GREEN, RED, label_of, number, shown
 
 POINTS = 200
 ROOM = 1.25  # factor beyond the weakest and the strongest campaign

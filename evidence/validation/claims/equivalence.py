@@ -4,7 +4,7 @@ import numpy as np
 
 from evidence.validation.study_curves import STIFFNESS
 from vibroimpact.config.changed_keys import changed_config
-from vibroimpact.linear.modes import natural_frequencies
+from vibroimpact.identify.linear.modes import natural_frequencies
 from vibroimpact.reduction.reduced_model import build_model
 
 from .claim import AGREE, Claim, graded

@@ -3,7 +3,7 @@
 import numpy as np
 
 from evidence.validation.study_curves import median, standard_error
-from vibroimpact.linear.poles import first_pole
+from vibroimpact.identify.linear.poles import first_pole
 
 from .claim import AGREE, Claim, graded, text
 

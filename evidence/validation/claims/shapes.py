@@ -3,7 +3,7 @@
 import numpy as np
 
 from evidence.validation.study_curves import median
-from vibroimpact.linear.responses import frf
+from vibroimpact.identify.linear.responses import frf
 
 from .claim import Claim, graded, text
 

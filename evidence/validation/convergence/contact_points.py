@@ -11,7 +11,7 @@ import numpy as np
 
 from evidence.validation.check import Check
 from vibroimpact.config.changed_keys import changed_config
-from vibroimpact.linear.modes import natural_frequencies
+from vibroimpact.identify.linear.modes import natural_frequencies
 from vibroimpact.reduction.reduced_model import build_model
 
 from .rate import extrapolated, fitted_order, successive_changes

@@ -11,9 +11,9 @@ import numpy as np
 
 from evidence.validation.check import Check
 from vibroimpact.config.changed_keys import changed_config
+from vibroimpact.identify.spectra.welch import effective_averages
+from vibroimpact.identify.spectra.window_leakage import spectral_kernel
 from vibroimpact.reduction.reduced_model import build_model
-from vibroimpact.spectra.welch import effective_averages
-from vibroimpact.spectra.window_leakage import spectral_kernel
 from vibroimpact.study.cases import Case
 from vibroimpact.study.simulation import simulate_cases
 

@@ -16,11 +16,12 @@ from dataclasses import replace
 import numpy as np
 
 from evidence.validation.check import Check
+from evidence.validation.prediction.responses import synthesise_records
 from vibroimpact.config.schema import Spectra
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.excitation.random_streams import random_generator
-from vibroimpact.linear.responses import frf, synthesise_records
-from vibroimpact.spectra.welch import (
+from vibroimpact.identify.linear.responses import frf
+from vibroimpact.identify.spectra.welch import (
     effective_averages,
     psd_statistics,
     segment_layout,

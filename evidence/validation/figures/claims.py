@@ -9,9 +9,9 @@ import numpy as np
 from evidence.validation.claims.response import peaks_by_sensor, valleys
 from evidence.validation.claims.shapes import node_places, quadrature
 from evidence.validation.study_curves import POLES, median
-from vibroimpact.figures.plot import Axis, Item, Mark, Panel, Plot, Series
-from vibroimpact.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, RED
-from vibroimpact.linear.poles import first_pole
+from vibroimpact.identify.linear.poles import first_pole
+from vibroimpact.reports.figures.plot import Axis, Item, Mark, Panel, Plot, Series
+from vibroimpact.reports.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, RED
 
 COLOURS = (BLUE, ORANGE, GREEN, RED)
 LOOK: dict[str, Any] = {"marker": "o", "size": 3, "width": 1.0}

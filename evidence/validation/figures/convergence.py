@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.figures.plot import Axis, Item, Mark, Panel, Plot, Series, Text
-from vibroimpact.figures.style import (
+from vibroimpact.reports.figures.plot import Axis, Item, Mark, Panel, Plot, Series, Text
+from vibroimpact.reports.figures.style import (
     BLACK,
     BLUE,
     GREEN,

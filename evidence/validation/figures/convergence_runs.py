@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from evidence.validation.convergence.statistics import ENERGY, LARGEST_SCATTER
-from vibroimpact.figures.plot import Axis, Item, Panel, Plot, Series
-from vibroimpact.figures.sheet import Sheet
-from vibroimpact.figures.style import (
+from vibroimpact.reports.figures.plot import Axis, Item, Panel, Plot, Series
+from vibroimpact.reports.figures.sheet import Sheet
+from vibroimpact.reports.figures.style import (
     BLACK,
     BLUE,
     GREEN,

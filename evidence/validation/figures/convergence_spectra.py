@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.figures.plot import Axis, Item, Mark, Panel, Plot, Series
-from vibroimpact.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, RED, ordered_colours
+from vibroimpact.reports.figures.plot import Axis, Item, Mark, Panel, Plot, Series
+from vibroimpact.reports.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, RED, ordered_colours
 
 WINDOWS = {"hann": ("-", "o"), "boxcar": ("--", "s")}
 PEAK_COLOURS = (BLUE, RED, GREEN)

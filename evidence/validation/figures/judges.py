@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.figures.columns import COLUMNS
-from vibroimpact.figures.sheet import Sheet
-from vibroimpact.figures.style import BLACK, BLUE, GREY, ORANGE, SKY
+from vibroimpact.reports.figures.columns import COLUMNS
+from vibroimpact.reports.figures.sheet import Sheet
+from vibroimpact.reports.figures.style import BLACK, BLUE, GREY, ORANGE, SKY
 
 POINT = 0  # the lower edge of the left plate
 ZOOM_S = (0.088, 0.100)

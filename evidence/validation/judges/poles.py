@@ -8,16 +8,17 @@ import numpy as np
 from scipy import signal
 
 from evidence.validation.check import Check
+from evidence.validation.prediction.responses import synthesise_records
 from vibroimpact.config.schema import Spectra
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.identify.half_spectra import half_spectra, lag_window
+from vibroimpact.identify.linear.modes import contact_matrix, driven_block
+from vibroimpact.identify.linear.poles import first_pole, frequency_of
+from vibroimpact.identify.linear.responses import frf
 from vibroimpact.identify.lscf import NormalEquations
 from vibroimpact.identify.operational_pole import PoleSearch, operational_pole
 from vibroimpact.identify.peak import find_peak
-from vibroimpact.linear.modes import contact_matrix, driven_block
-from vibroimpact.linear.poles import first_pole, frequency_of
-from vibroimpact.linear.responses import frf, synthesise_records
-from vibroimpact.spectra.welch import (
+from vibroimpact.identify.spectra.welch import (
     cross_spectra,
     effective_averages,
     psd_statistics,

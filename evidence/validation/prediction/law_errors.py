@@ -9,18 +9,19 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from vibroimpact.config.reading import check_config
-from vibroimpact.equivalent_support.displacement_law import fit_displacement_law, held_tube
+from vibroimpact.equivalent_support.displacement_law import held_tube
 from vibroimpact.equivalent_support.law_file import REGIONS
-from vibroimpact.equivalent_support.scaled_law import fit_law, plate_stiffness
 from vibroimpact.identify.estimate import table_rows
 from vibroimpact.identify.identify_case import identify_case
+from vibroimpact.identify.linear.modes import natural_frequencies
 from vibroimpact.io.provenance import config_digest
-from vibroimpact.linear.modes import natural_frequencies
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.study.case_spectra import case_spectra
 from vibroimpact.study.cases import Case
 from vibroimpact.study.method_agreement import COMPARED, summary_rows
 from vibroimpact.study.simulation import simulate_cases
+
+from .laws import fit_displacement_law, fit_law, plate_stiffness
 
 LEVELS = (0.6, 1.0, 1.7, 3.0, 5.0, 9.0, 16.0, 24.0)  # inside what the default study covers
 SEEDS = 2

@@ -16,9 +16,9 @@ from scipy.integrate import quad
 from scipy.special import erfc
 
 from evidence.validation.check import Check
+from vibroimpact.identify.linear.support_groups import support_directions
 from vibroimpact.identify.secant import secant_support
 from vibroimpact.identify.statistical_linearisation import statistical_linearisation
-from vibroimpact.linear.support_groups import support_directions
 from vibroimpact.reduction.modal_model import ModalModel
 
 SOURCE = "exact, Fokker-Planck"

@@ -7,9 +7,9 @@ import numpy as np
 
 from evidence.validation.check import Check
 from vibroimpact.config.wear import Wear
-from vibroimpact.wear.depth import YEAR_S, WornShape, depth_of, volume_of
-from vibroimpact.wear.laws import Archard, EdfMz, WearLaw
-from vibroimpact.wear.life import worn_life
+from vibroimpact.study.wear.depth import YEAR_S, WornShape, depth_of, volume_of
+from vibroimpact.study.wear.laws import Archard, EdfMz, WearLaw
+from vibroimpact.study.wear.life import worn_life
 
 ASTER = "code_aster (zzzz405a)"
 EXACT, POWER_W = "closed form", 0.5

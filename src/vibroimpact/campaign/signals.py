@@ -12,8 +12,8 @@ from functools import cached_property
 import numpy as np
 import xarray as xr
 
-from vibroimpact.spectra.periodic_lines import PeriodError, find_period
-from vibroimpact.spectra.welch import SegmentSpectra, segment_spectra
+from vibroimpact.identify.spectra.periodic_lines import PeriodError, find_period
+from vibroimpact.identify.spectra.welch import SegmentSpectra, segment_spectra
 
 from .file import (
     CampaignError,

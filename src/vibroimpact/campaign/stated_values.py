@@ -13,8 +13,8 @@ from typing import Any, Literal, get_args
 import numpy as np
 import xarray as xr
 
+from vibroimpact.identify.spectra.periodic_lines import SHORTEST_PERIOD
 from vibroimpact.io.units import UnitError, si_factor
-from vibroimpact.spectra.periodic_lines import SHORTEST_PERIOD
 
 from .force_kinds import FORCE_KINDS, unit_kinds
 

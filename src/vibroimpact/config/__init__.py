@@ -2,5 +2,5 @@
 the part of it that each stage of the workflow gets.
 
 Config is the declaration, checked and immutable. StageSettings is the view of it that a stage gets,
-with the same attribute names.
+with the same attribute names. `materials` holds the properties of named metals and fluids.
 """

@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 from pydantic import Field, ValidationInfo, field_validator
 from pydantic_core import PydanticCustomError
 
-from vibroimpact.materials.fluids import fluid_properties
+from vibroimpact.config.materials.fluids import fluid_properties
 
 from .material import given_or_named, named_or_given, named_temperature
 from .mixture import Mixture, TwoPhaseDamping, given_or_mixed

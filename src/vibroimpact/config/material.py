@@ -12,7 +12,7 @@ from pydantic import ConfigDict, Field, ValidationInfo, field_validator
 from pydantic.config import JsonDict, JsonValue
 from pydantic_core import PydanticCustomError
 
-from vibroimpact.materials.solids import solid_properties
+from vibroimpact.config.materials.solids import solid_properties
 
 from .quantities import NOT_GIVEN, Density, Poisson_ratio, Section, Temperature_C, Youngs_modulus_Pa
 

@@ -147,6 +147,13 @@ class _Place:
     sections: tuple[type[Section], ...]
 
 
+def _holds(data: Any, part: Any) -> bool:
+    """Return whether data hold a key, or an index."""
+    if isinstance(data, (list, tuple)):
+        return isinstance(part, int) and part < len(data)
+    return isinstance(data, dict) and part in data
+
+
 def _resolve(location: tuple, data: Any, whole: type[Section] = Config) -> _Place:
     """Return the place that a pydantic location means in `data`.
 
@@ -158,14 +165,9 @@ def _resolve(location: tuple, data: Any, whole: type[Section] = Config) -> _Plac
     path: list = []
     keys: Mapping[str, FieldInfo] = whole.model_fields
     for index, part in enumerate(location):
-        in_data = (isinstance(data, dict) and part in data) or (
-            isinstance(data, (list, tuple)) and isinstance(part, int) and part < len(data)
-        )
-        if (
-            part == "[key]"
-            or (not in_data and index < len(location) - 1)
-            or (not in_data and part in ("one", "list"))
-        ):
+        in_data = _holds(data, part)
+        last = index == len(location) - 1
+        if part == "[key]" or (not in_data and (not last or part in ("one", "list"))):
             annotation = next((m for m in members(annotation) if kind_of(m) == part), annotation)
             model = annotation if annotation in sections_in(annotation) else model
             continue

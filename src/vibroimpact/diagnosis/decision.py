@@ -14,8 +14,8 @@ from operator import attrgetter
 import numpy as np
 from scipy.special import expit
 
-from vibroimpact.verdict.content import Conclusion
-from vibroimpact.verdict.misfit import makes_worse
+from vibroimpact.diagnosis.verdict.content import Conclusion
+from vibroimpact.diagnosis.verdict.misfit import makes_worse
 
 from . import constants
 from .free_runs import CHANCE_RUNS

@@ -14,10 +14,7 @@ from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.config.measured_structure import MeasuredStructure
 from vibroimpact.config.schema import Config
 from vibroimpact.diagnosis.run_cost import SIMULATED
-from vibroimpact.effects.registry import EFFECTS
-from vibroimpact.io.records import write_record, write_table, write_text
-from vibroimpact.io.stopwatch import Stopwatch
-from vibroimpact.verdict.content import (
+from vibroimpact.diagnosis.verdict.content import (
     WITH_AMBIGUITY_SET,
     WITH_EFFECTS,
     Misfit,
@@ -26,8 +23,11 @@ from vibroimpact.verdict.content import (
     not_run_sentence,
     write_verdict,
 )
-from vibroimpact.verdict.content import not_testable as not_testable_verdict
-from vibroimpact.verdict.misfit import makes_worse, not_offered
+from vibroimpact.diagnosis.verdict.content import not_testable as not_testable_verdict
+from vibroimpact.diagnosis.verdict.misfit import makes_worse, not_offered
+from vibroimpact.effects.registry import EFFECTS
+from vibroimpact.io.records import write_record, write_table, write_text
+from vibroimpact.io.stopwatch import Stopwatch
 
 from .comparison import Comparison
 from .completed import completed_model, effect_rows

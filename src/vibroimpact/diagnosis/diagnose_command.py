@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from vibroimpact.verdict.content import Estimate, Verdict
+    from vibroimpact.diagnosis.verdict.content import Estimate, Verdict
 
 EFFORTS = ("quick", "standard", "thorough")
 
@@ -76,7 +76,7 @@ def run(options: argparse.Namespace) -> int:
 
 def summary(verdict: Verdict) -> list[str]:
     """Return the lines that tell a verdict on a terminal."""
-    from vibroimpact.verdict.content import not_run_sentence
+    from vibroimpact.diagnosis.verdict.content import not_run_sentence
 
     lines = [f"Verdict: {verdict.verdict.replace('_', ' ')}"]
     if verdict.verdict == "not_testable":

@@ -13,8 +13,8 @@ from itertools import combinations
 
 import numpy as np
 
+from vibroimpact.diagnosis.verdict.misfit import closed_fraction
 from vibroimpact.integration.contact_convergence import IntegrationError
-from vibroimpact.verdict.misfit import closed_fraction
 
 from .constants import FREE_EXCESS_DB
 from .explanations import Point, Structure

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vibroimpact.verdict.misfit import excess
+from vibroimpact.diagnosis.verdict.misfit import excess
 
 from .bench import effective_lines, holding_lines, misfit
 from .comparison import Comparison

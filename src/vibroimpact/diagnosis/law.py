@@ -21,8 +21,8 @@ import numpy as np
 from scipy.ndimage import uniform_filter1d
 from scipy.signal.windows import tukey
 
-from vibroimpact.contact.laws import LocalLaws
 from vibroimpact.reduction.modal_model import ModalModel
+from vibroimpact.structure.contact.laws import LocalLaws
 
 from .bench import Bench, settled
 from .comparison import Comparison

@@ -12,9 +12,9 @@ from scipy import stats
 
 from vibroimpact.campaign.signals import campaign_signals
 from vibroimpact.geometry.directions import unit_vector
+from vibroimpact.identify.linear.support_groups import SupportDirection
 from vibroimpact.identify.secant import MOMENTS, secant_support
 from vibroimpact.integration.run_statistics import pooled, statistics
-from vibroimpact.linear.support_groups import SupportDirection
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .measurement.comparable import compared_channels, contact_force_fault

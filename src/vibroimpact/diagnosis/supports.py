@@ -17,7 +17,7 @@ import xarray as xr
 
 from vibroimpact.campaign.file import CampaignError
 from vibroimpact.config.schema import Config
-from vibroimpact.linear.support_groups import support_directions
+from vibroimpact.identify.linear.support_groups import support_directions
 
 from .comparison import Comparison
 from .explanations import Point, Structure

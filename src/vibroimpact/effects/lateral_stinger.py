@@ -7,8 +7,6 @@ from vibroimpact.geometry.directions import unit_vector
 from . import places
 from .effect import Effect, Parameter, Values
 
-# cosine between the rod and the force: below it the rod holds a motion that the force hardly drives
-ACROSS = 0.1
 ALONG = 0.995  # cosine between a force and a global axis: from it on the force is along the axis
 AXES = {"along_x": (1.0, 0.0, 0.0), "along_y": (0.0, 1.0, 0.0), "along_z": (0.0, 0.0, 1.0)}
 ALONG_FORCE = "along_force"
@@ -43,12 +41,6 @@ def locations(values: Values) -> list[str]:
     start = places.start_direction(values)
     out = None if start is None else int(np.argmax(np.abs(start)))
     return names + [name for number, name in enumerate(AXES) if number != out]
-
-
-def across_force(values: Values, location: str) -> bool:
-    """Return whether a rod along a location is across the force."""
-    force = unit_vector(values["excitation"]["direction"])
-    return bool(abs(force @ unit_vector(_held(values, location))) < ACROSS)
 
 
 EFFECT = Effect(

@@ -197,14 +197,6 @@ def length_m(values: Values) -> float | None:
     return _centreline(values).length if values["structure"]["kind"] in TUBES else None
 
 
-def arc_lengths(values: Values, points: Sequence[str]) -> list[float]:
-    """Return the arc lengths in m of named points of a tube; none of another structure."""
-    if values["structure"]["kind"] not in TUBES:
-        return []
-    line = _centreline(values)
-    return [line.locate(values["points"][point], point) for point in points]
-
-
 def with_place(values: Values, location: str) -> Values:
     """Return the configuration with a named point at a location between those that it has."""
     arc_length = arc_length_m(location)
@@ -250,14 +242,6 @@ def start_direction(values: Values) -> np.ndarray | None:
     if values["structure"]["kind"] not in TUBES:
         return None
     return _centreline(values).direction(0.0)
-
-
-def direction_at(values: Values, point: str) -> np.ndarray | None:
-    """Return the direction (3,) of a tube at a named point, None of another structure."""
-    if values["structure"]["kind"] not in TUBES:
-        return None
-    line = _centreline(values)
-    return line.direction(line.locate(values["points"][point], point))
 
 
 def support_at(values: Values, point: str) -> Values:

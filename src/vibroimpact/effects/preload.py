@@ -35,9 +35,9 @@ EFFECT = Effect(
     explanation="a constant force presses the tube to one side",
     law="constant force on the tube at the middle of the support",
     source="statics",
-    parameters=(
+    parameters=tuple(
         Parameter(
-            "force_x",
+            f"force_{axis}",
             "N",
             -5.0,
             5.0,
@@ -45,19 +45,9 @@ EFFECT = Effect(
             per="gap_force",
             log=False,
             gain_power=1.0,
-            meaning="force along the first transverse direction",
-        ),
-        Parameter(
-            "force_y",
-            "N",
-            -5.0,
-            5.0,
-            0.0,
-            per="gap_force",
-            log=False,
-            gain_power=1.0,
-            meaning="force along the second transverse direction",
-        ),
+            meaning=f"force along the {word} transverse direction",
+        )
+        for axis, word in (("x", "first"), ("y", "second"))
     ),
     apply=apply,
     locations=places.supports,

@@ -21,9 +21,9 @@ EFFECT = Effect(
     explanation="the support is not centred on the tube",
     law="the centre of the support lies at (offset_x, offset_y) in its plane",
     source="geometry",
-    parameters=(
+    parameters=tuple(
         Parameter(
-            "offset_x",
+            f"offset_{axis}",
             "m",
             -1.5,
             1.5,
@@ -31,19 +31,9 @@ EFFECT = Effect(
             per="gap",
             log=False,
             gain_power=1.0,
-            meaning="offset along the first transverse direction",
-        ),
-        Parameter(
-            "offset_y",
-            "m",
-            -1.5,
-            1.5,
-            0.0,
-            per="gap",
-            log=False,
-            gain_power=1.0,
-            meaning="offset along the second transverse direction",
-        ),
+            meaning=f"offset along the {word} transverse direction",
+        )
+        for axis, word in (("x", "first"), ("y", "second"))
     ),
     apply=apply,
     locations=places.supports,

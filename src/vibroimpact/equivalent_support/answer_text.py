@@ -13,31 +13,6 @@ from vibroimpact.study.reasons import NOT_MOVED, UNITS
 
 from .answer import Answer, GroupAnswer, Span
 
-COLUMNS = (
-    "study",
-    "kind",
-    "gap_m",
-    "load_rms_N",
-    "group",
-    "supports",
-    "direction",
-    "k_N_per_m",
-    "k_low",
-    "k_high",
-    "c_N_s_per_m",
-    "c_low",
-    "c_high",
-    "secant_k_N_per_m",
-    "secant_c_N_s_per_m",
-    "agreement_k",
-    "agreement_c",
-    "reason_k",
-    "reason_c",
-    "how",
-    "k_bound",
-    "flag",
-    "anyway",
-)
 AGREEMENTS = {
     "spread": "more than 25 % apart",
     "differ": "they differ",
@@ -116,49 +91,43 @@ def _span_text(span: Span) -> str:
 
 
 def table_rows(answer: Answer) -> list[dict[str, Any]]:
-    """Return one dict per group and direction with the keys COLUMNS."""
+    """Return {column of the CSV: value} of every group and direction."""
     return [
-        dict(
-            zip(
-                COLUMNS,
-                (
-                    answer.study,
-                    answer.kind,
-                    answer.gap_m,
-                    answer.load_rms_N,
-                    group.group,
-                    " ".join(group.supports),
-                    group.direction,
-                    group.k.value,
-                    group.k.low,
-                    group.k.high,
-                    group.c.value,
-                    group.c.low,
-                    group.c.high,
-                    group.secant_k,
-                    group.secant_c,
-                    group.agreement_k,
-                    group.agreement_c,
-                    group.reason_k,
-                    group.reason_c,
-                    group.how,
-                    group.bound,
-                    group.flag,
-                    group.anyway,
-                ),
-                strict=True,
-            )
-        )
+        {
+            "study": answer.study,
+            "kind": answer.kind,
+            "gap_m": answer.gap_m,
+            "load_rms_N": answer.load_rms_N,
+            "group": group.group,
+            "supports": " ".join(group.supports),
+            "direction": group.direction,
+            "k_N_per_m": group.k.value,
+            "k_low": group.k.low,
+            "k_high": group.k.high,
+            "c_N_s_per_m": group.c.value,
+            "c_low": group.c.low,
+            "c_high": group.c.high,
+            "secant_k_N_per_m": group.secant_k,
+            "secant_c_N_s_per_m": group.secant_c,
+            "agreement_k": group.agreement_k,
+            "agreement_c": group.agreement_c,
+            "reason_k": group.reason_k,
+            "reason_c": group.reason_c,
+            "how": group.how,
+            "k_bound": group.bound,
+            "flag": group.flag,
+            "anyway": group.anyway,
+        }
         for group in answer.groups
     ]
 
 
 def as_csv(answer: Answer) -> str:
-    """Return an answer as CSV: one row per group and direction, under COLUMNS."""
-    text = io.StringIO()
-    writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
+    """Return an answer as CSV: one row per group and direction."""
+    text, rows = io.StringIO(), table_rows(answer)
+    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
     writer.writeheader()
-    writer.writerows(table_rows(answer))
+    writer.writerows(rows)
     return text.getvalue().rstrip("\n")
 
 

@@ -61,6 +61,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="print JSON in place of the text")
     form.add_argument("--csv", action="store_true", help="print CSV in place of the text")
+    _add_export_arguments(parser)
+    parser.set_defaults(command=run)
+
+
+def _add_export_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--export",
         nargs=2,
@@ -93,7 +98,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="ID",
         help="export: first number of nodes and elements (default 900001)",
     )
-    parser.set_defaults(command=run)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -12,16 +12,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from vibroimpact.identify.linear.modes import contact_matrix, driven_block
 from vibroimpact.identify.statistical_linearisation import band_power
-from vibroimpact.linear.modes import contact_matrix, driven_block
 from vibroimpact.reduction.modal_model import ModalModel
-from vibroimpact.study.method_agreement import COMPARED
 
-from .scaled_law import NEIGHBOURS, plate_shapes
+from .support_directions import plate_shapes
 
 STEPS_PER_DECADE = 24  # of the stiffnesses at which the linear tube is computed
 LOWEST_SHARE = 1.0e-6  # of the contact stiffness; a softer support is none
@@ -117,26 +115,3 @@ class DisplacementLaw:
         held = float(np.exp(np.interp(x, places, np.log(self.held))))
         k = tube.stiffness_at(held, load_rms_N, gap_m)
         return k, float(np.interp(x, places, self.loss)) * k / tube.first_omega(k)
-
-
-def fit_displacement_law(summary: Sequence[dict[str, Any]], tube: HeldTube) -> DisplacementLaw:
-    """Return the law of a study: running medians over loads, gaps and the compared methods.
-
-    summary: rows of consistency_summary.csv. tube: of the study.
-    """
-    points = []
-    for row in summary:
-        k, c = row["k_median"], row["c_median"]
-        if row["method"] in COMPARED and np.isfinite(k):
-            case = row["load_rms_N"], row["gap_m"]
-            loss = c * tube.first_omega(k) / k
-            points.append((tube.level(*case), tube.held(k, *case), loss))
-    level, held, loss = np.array(sorted(points), dtype=float).T
-    parts = [slice(first, first + NEIGHBOURS) for first in range(0, level.size - NEIGHBOURS + 1, 2)]
-    levels = np.array([np.exp(np.median(np.log(level[part]))) for part in parts])
-    kept = np.concatenate([[True], np.diff(levels) > 0.0])
-    return DisplacementLaw(
-        levels[kept],
-        np.array([np.exp(np.median(np.log(held[part]))) for part in parts])[kept],
-        np.array([np.nanmedian(loss[part]) for part in parts])[kept],  # the shape gives no c
-    )

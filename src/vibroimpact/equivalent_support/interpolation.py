@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -54,10 +55,10 @@ def read_at(
     blocked: dict[float, list[dict[str, Any]]] = {}
     for gap in sorted({row["gap_m"] for row in rows}, reverse=True):
         ends = _neighbours([row for row in rows if row["gap_m"] == gap], level, level_of)
-        values = np.array([[row[column] for column in columns] for row in ends], dtype=float)
         if not ends:
             continue
-        if not np.all(np.isfinite(values)) or (logarithmic and np.any(values <= 0.0)):
+        values = np.array([[row[column] for column in columns] for row in ends], dtype=float)
+        if not np.all((values > (0.0 if logarithmic else -np.inf)) & np.isfinite(values)):
             blocked[float(gap)] = ends
             continue
         levels = [level_of(row) for row in ends]
@@ -66,13 +67,13 @@ def read_at(
         gaps.append(float(gap))
         used += ends
     if len(found) < max(len(blocked), 1):
-        rows_blocked = tuple(row for ends in blocked.values() for row in ends)
+        rows_blocked = tuple(chain.from_iterable(blocked.values()))
         return Reading(Span(), (np.nan, np.nan), (), tuple(blocked), np.nan, rows_blocked)
     value, low, high = np.array(found).T
     middle = np.exp(np.median(np.log(value))) if logarithmic else np.median(value)
     return Reading(
         Span(float(middle), float(low.min()), float(high.max())),
-        (max(low for low, _ in brackets), min(high for _, high in brackets)),
+        (max(brackets)[0], min(high for _, high in brackets)),
         tuple(gaps),
         tuple(blocked),
         float(value.max() / value.min()) if logarithmic else np.nan,

@@ -8,7 +8,6 @@ config/validation/other_tubes.yaml.
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -16,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.io.records import plain_values, read_text
+from vibroimpact.io.records import read_text
 
 from .displacement_law import DisplacementLaw
 
@@ -59,25 +58,9 @@ class ShippedLaw:
         return error
 
 
-def law_text(law: DisplacementLaw, errors: Sequence[dict[str, Any]], origin: dict[str, Any]) -> str:
-    """Return the JSON text of a law, its errors and its origin; numbers with six digits."""
-    content = {
-        "what": "RMS displacement of the linear tube on its equivalent support over the gap (held)"
-        " and loss factor c omega / k (loss), against that of the tube without supports (level)",
-        "origin": origin,
-        **{name: _six_digits(getattr(law, name)) for name in ("level", "held", "loss")},
-        "errors": [{key: float(f"{value:.4g}") for key, value in row.items()} for row in errors],
-    }
-    return json.dumps(plain_values(content), indent=1) + "\n"
-
-
-def _six_digits(values: np.ndarray) -> list[float]:
-    return [float(f"{value:.6g}") for value in values]
-
-
 @cache
 def shipped_law(path: Path = LAW_FILE) -> ShippedLaw:
-    """Return the law of a file of law_text; that of the package by default."""
+    """Return the law of a file that the workflow makes; that of the package by default."""
     content = json.loads(read_text(path))
     arrays = {name: np.array(content[name]) for name in ("level", "held", "loss")}
     return ShippedLaw(DisplacementLaw(**arrays), tuple(content["errors"]), content["origin"])

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.linear.support_groups import acting_directions
+from vibroimpact.identify.linear.support_groups import acting_directions
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .answer import Answer, EquivalentError, GroupAnswer, Span
@@ -54,8 +54,8 @@ def point_springs(
     """Return the SpringSet of an answer on the structure it belongs to.
 
     The k and c of a support are shared by its contact points with their weights, in both
-    transverse directions, as in the linear tube that the methods compare with (linear.modes).
-    Unresolved values are left out.
+    transverse directions, as in the linear tube that the methods compare with
+    (identify.linear.modes). Unresolved values are left out.
 
     points: "each" for every contact point, "one" for a single spring at the middle of a support.
     across: "same" gives a transverse direction that the force of the study does not move the k and
@@ -67,20 +67,15 @@ def point_springs(
     space.
     """
     _require_positions(model)
-    by_support: dict[str, list[GroupAnswer]] = {name: [] for name in model.support_names}
-    for group in answer.groups:
-        for name in group.supports:
-            by_support[name].append(group)
-    springs = [
-        spring
-        for number, name in enumerate(model.support_names)
-        for spring in _springs_of_support(model, number, by_support[name], points, across)
-    ]
+    springs: list[PointSpring] = []
+    for number, name in enumerate(model.support_names):
+        groups = [group for group in answer.groups if name in group.supports]
+        springs += _springs_of_support(model, number, groups, points, across)
     kept = tuple(spring for spring in springs if spring.k != (None, None))
     bounded = {name for group in answer.groups if group.bounded for name in group.supports}
-    there = {item.support for item in kept} | bounded
-    bare = [name for name in model.support_names if name not in there]
-    left_out = [*answer.unresolved, *(f"support {name} has no spring" for name in bare)]
+    bare = set(model.support_names) - {item.support for item in kept} - bounded
+    bare_words = [f"support {name} has no spring" for name in model.support_names if name in bare]
+    left_out = [*answer.unresolved, *bare_words]
     if not kept and not bounded:
         raise EquivalentError(f"nothing to export: {'; '.join(left_out)}")
     warnings = [*answer.warnings, *(_without_spring(group) for group in answer.groups)]
@@ -145,12 +140,14 @@ def _along(
     if len(axes) == 1:  # parallel stops: nothing across them
         axes.append(np.cross(np.cross(*model.contact_directions[point]), axes[0]))
         found.append(None)
-    k, c = (
-        tuple(None if group is None else _value(getattr(group, name)) for group in found)
-        for name in ("k", "c")
-    )
-    damped = (None if stiffness is None else value for stiffness, value in zip(k, c, strict=True))
-    return np.array(axes), (k[0], k[1]), (next(damped), next(damped))
+    (k_first, c_first), (k_second, c_second) = map(_pair_of, found)
+    return np.array(axes), (k_first, k_second), (c_first, c_second)
+
+
+def _pair_of(group: GroupAnswer | None) -> Pair:
+    """Return (k, c) of a group; without a k there is no c either."""
+    k = None if group is None else _value(group.k)
+    return k, None if group is None or k is None else _value(group.c)
 
 
 def _value(span: Span) -> float | None:

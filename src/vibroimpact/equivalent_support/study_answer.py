@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.identify.estimate import METHODS
+from vibroimpact.identify.linear.support_groups import acting_directions
 from vibroimpact.io.records import RecordError
-from vibroimpact.linear.support_groups import acting_directions
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.study.method_agreement import VERDICTS
@@ -79,10 +79,7 @@ def equivalent(
             group,
             direction,
             members(group, direction, model),
-            [
-                [row for row in rows if (row["group"], row["direction"]) == (group, direction)]
-                for rows in (recommended, summary)
-            ],
+            [_of_group(rows, group, direction) for rows in (recommended, summary)],
         )
         for group, direction in keys
     )
@@ -183,6 +180,10 @@ def _load(row: dict[str, Any]) -> float:
 
 def _load_over_gap(row: dict[str, Any]) -> float:
     return float(row["load_rms_N"]) / float(row["gap_m"])
+
+
+def _of_group(rows: list[dict[str, Any]], group: str, direction: str) -> list[dict[str, Any]]:
+    return [row for row in rows if (row["group"], row["direction"]) == (group, direction)]
 
 
 def _gap_of_the_grid(study: str, rows: Rows, gap_m: float, effects: list[str]) -> float:

@@ -14,11 +14,11 @@ import xarray as xr
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.identify.estimate import table_rows
 from vibroimpact.identify.identify_case import identify_case
-from vibroimpact.linear.responses import FREQUENCY_CHUNK
-from vibroimpact.linear.support_groups import ALL, SupportDirection, reached_supports
-from vibroimpact.linear.supported_structure import SupportedStructure
+from vibroimpact.identify.linear.responses import FREQUENCY_CHUNK
+from vibroimpact.identify.linear.support_groups import ALL, SupportDirection, reached_supports
+from vibroimpact.identify.linear.supported_structure import SupportedStructure
+from vibroimpact.identify.spectra.welch import driven_axis
 from vibroimpact.reduction.modal_model import ModalModel
-from vibroimpact.spectra.welch import driven_axis
 from vibroimpact.study.equivalent_table import equivalent_rows
 from vibroimpact.study.method_agreement import consistency_rows, summary_rows
 

@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from vibroimpact.excitation.fluid_elastic import FluidForce
-from vibroimpact.linear.support_groups import SupportDirection, support_directions
+from vibroimpact.identify.linear.support_groups import SupportDirection, support_directions
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .coupled import Zone, critical_velocity, system

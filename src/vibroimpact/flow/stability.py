@@ -13,7 +13,7 @@ from vibroimpact.config.flow import Coupling, Flow
 from vibroimpact.config.name_checks import TUBES
 from vibroimpact.config.schema import Config
 from vibroimpact.excitation.fluid_elastic import fluid_force, outside_fit
-from vibroimpact.linear.support_groups import SupportDirection, support_directions
+from vibroimpact.identify.linear.support_groups import SupportDirection, support_directions
 
 from .along import TubeInFlow, tube_in_flow
 from .coupled import Zone, critical_velocity, oscillations, system

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.linear.family import FamilyResponse
-from vibroimpact.spectra.window_leakage import SpectralKernel, correlated_sum
+from vibroimpact.identify.linear.family import FamilyResponse
+from vibroimpact.identify.spectra.window_leakage import SpectralKernel, correlated_sum
 
 from .segment_scatter import widened
 

@@ -26,16 +26,7 @@ def case_curves(
     pole, shape, broad: as CaseSpectra returns them.
     """
     tube = case.tube
-    fitted = np.full((len(peaks), case.frequency.size), np.nan)
-    for row, fit in zip(fitted, peaks.values(), strict=True):
-        if fit is not None:
-            row[fit.bins] = fit.curve
-    data = {
-        "peak_curve": _variable(
-            ("level", "low_frequency"), fitted, "m2 Hz-1", "fitted resonance curve"
-        ),
-        "peak_level": _variable("level", list(LEVELS.values()), "1", "peak over level"),
-    }
+    data = _peak_variables(peaks, case.frequency)
     if pole is not None:
         data |= _chart_variables(pole)
     if shape is not None:
@@ -67,16 +58,7 @@ def supports_curves(case: SupportsCase, result: SupportsResult) -> xr.Dataset:
     There is no map over one k and c; the covariance of ln k over the directions takes its place.
     """
     tube = case.tube
-    fitted = np.full((len(result.peaks), tube.frequency.size), np.nan)
-    for row, fit in zip(fitted, result.peaks.values(), strict=True):
-        if fit is not None:
-            row[fit.bins] = fit.curve
-    data = {
-        "peak_curve": _variable(
-            ("level", "low_frequency"), fitted, "m2 Hz-1", "fitted resonance curve"
-        ),
-        "peak_level": _variable("level", list(LEVELS.values()), "1", "peak over level"),
-    }
+    data = _peak_variables(result.peaks, tube.frequency)
     if result.pole is not None:
         data |= _chart_variables(result.pole)
     if result.shape is not None:
@@ -115,6 +97,19 @@ def _coordinates(levels: list[str], frequency: np.ndarray, broadband: slice) -> 
         "level": ("level", levels, {"long_name": "method by the width of the peak"}),
         "low_frequency": ("low_frequency", frequency, hertz),
         "broadband_frequency": ("broadband_frequency", frequency[broadband], hertz),
+    }
+
+
+def _peak_variables(peaks: dict[str, PeakFit | None], frequency: np.ndarray) -> dict:
+    fitted = np.full((len(peaks), frequency.size), np.nan)
+    for row, fit in zip(fitted, peaks.values(), strict=True):
+        if fit is not None:
+            row[fit.bins] = fit.curve
+    return {
+        "peak_curve": _variable(
+            ("level", "low_frequency"), fitted, "m2 Hz-1", "fitted resonance curve"
+        ),
+        "peak_level": _variable("level", list(LEVELS.values()), "1", "peak over level"),
     }
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.config.stage_settings import ConfigPart
-from vibroimpact.linear.support_groups import SupportDirection
+from vibroimpact.identify.linear.support_groups import SupportDirection
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .broadband import BroadbandFit

@@ -4,16 +4,16 @@ A complex lambda is a pole of the tube with support s = k + lambda c exactly whe
 eigenvalue mu of the contact compliance G at lambda. So no search is needed: the imaginary part of s
 gives c, the rest k. The first mode's eigenvalue is the one with a positive k, the smallest if there
 are several: supports that stiffen other modes down to this pole are negative.
-`linear.poles.support_from_pole` follows the first mode of every candidate from c = 0 instead; it is
-slower and checks this module.
+`linear.poles.support_from_pole` follows the first mode of every candidate from c = 0 instead; it
+is slower and checks this module.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.linear.family import DrivenModes
-from vibroimpact.linear.poles import pole_of
+from vibroimpact.identify.linear.family import DrivenModes
+from vibroimpact.identify.linear.poles import pole_of
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.linear.support_groups import SupportDirection
+from vibroimpact.identify.linear.support_groups import SupportDirection
 
 PEAK_METHODS = ("peak_half", "peak_quarter", "peak_25th")
 METHODS = (*PEAK_METHODS, "lscf", "ods", "broadband", "statistical_linearisation", "secant")

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vibroimpact.linear.supported_structure import SupportedStructure
+from vibroimpact.identify.linear.supported_structure import SupportedStructure
 
 from .estimate import (
     BOUND_SIGMAS,

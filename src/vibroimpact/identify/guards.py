@@ -13,8 +13,8 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
+from vibroimpact.identify.linear.poles import first_pole, pole_of
 from vibroimpact.integration.energy_limit import energy_flag
-from vibroimpact.linear.poles import first_pole, pole_of
 from vibroimpact.reduction.basis_accuracy import STIFFNESSES
 from vibroimpact.reduction.modal_model import ModalModel
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.spectra.window_leakage import window_autocorrelation
+from vibroimpact.identify.spectra.window_leakage import window_autocorrelation
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,10 @@ import xarray as xr
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.excitation.line_force_spectrum import relative_psd
 from vibroimpact.geometry.sections import outer_width
+from vibroimpact.identify.linear.support_groups import acts_on_all, reached_supports
+from vibroimpact.identify.spectra.welch import complex_values, driven_axis
 from vibroimpact.integration.energy_limit import ENERGY_RESIDUALS
-from vibroimpact.linear.support_groups import acts_on_all, reached_supports
 from vibroimpact.reduction.modal_model import ModalModel
-from vibroimpact.spectra.welch import complex_values, driven_axis
 
 from .broadband import NEEDS_FORCE, UNKNOWN, BroadbandFit, identify_broadband
 from .case_curves import case_curves, supports_curves

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.config.stage_settings import ConfigPart
-from vibroimpact.spectra.welch import complex_values
+from vibroimpact.identify.spectra.welch import complex_values
 
 from .broadband import NEEDS_FORCE, UNKNOWN
 from .case_estimates import LOWEST_CORRELATION, LOWEST_MAC, ONE_SENSOR, without_damping

@@ -11,8 +11,8 @@ from dataclasses import replace
 import numpy as np
 
 from vibroimpact.identify.least_squares import minimise
+from vibroimpact.identify.spectra.periodic_lines import LevelLines
 from vibroimpact.reduction.modal_structure import IdentifiedModes
-from vibroimpact.spectra.periodic_lines import LevelLines
 
 from .stabilisation import StabilisationChart
 from .stable_poles import stable_poles
@@ -203,19 +203,6 @@ def unpack(values: np.ndarray, modes: IdentifiedModes) -> IdentifiedModes:
         damping_ratio=np.exp(values[count : 2 * count]),
         shapes=shapes,
     )
-
-
-def relative_errors(
-    predicted: np.ndarray, level: LevelLines, band_Hz: Sequence[float]
-) -> np.ndarray:
-    """Return (channel,) RMS of measured minus predicted response over the measured RMS.
-
-    predicted: (channel, excited line).
-    """
-    inside = level.excited(band_Hz)
-    weight = np.where(level.frequency[inside] == 0.0, 1.0, 2.0)
-    missed = np.sum(weight * np.abs(predicted - level.response[:, inside]) ** 2, axis=1)
-    return np.sqrt(missed / np.sum(weight * np.abs(level.response[:, inside]) ** 2, axis=1))
 
 
 def channel_scale(level: LevelLines, band_Hz: Sequence[float]) -> np.ndarray:

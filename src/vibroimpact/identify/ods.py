@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.linear.family import FamilyResponse
+from vibroimpact.identify.linear.family import FamilyResponse
 
 # Relative standard error of a sensor's gain. The uncertainty of the model's shape follows from it.
 GAIN_ERROR = 0.02

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.linear.poles import frequency_of
+from vibroimpact.identify.linear.poles import frequency_of
 
 from .half_spectra import half_spectra, lag_window
 from .lscf import NormalEquations

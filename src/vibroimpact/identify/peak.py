@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.spectra.window_leakage import SpectralKernel, correlated_sum
+from vibroimpact.identify.spectra.window_leakage import SpectralKernel, correlated_sum
 
 from .segment_scatter import widened
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.linear.poles import frequency_of, pole_of
-from vibroimpact.linear.supported_structure import SupportedStructure
+from vibroimpact.identify.linear.poles import frequency_of, pole_of
+from vibroimpact.identify.linear.supported_structure import SupportedStructure
 
 PASSES = 8
 LARGEST_CHANGE = 0.7  # of ln k in one pass

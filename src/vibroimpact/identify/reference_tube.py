@@ -9,11 +9,11 @@ from functools import cached_property
 
 import numpy as np
 
-from vibroimpact.linear.family import FamilyResponse, LinearFamily, driven_modes
-from vibroimpact.linear.modes import support_stiffness
-from vibroimpact.linear.poles import first_pole, frequency_of, pole_of
+from vibroimpact.identify.linear.family import FamilyResponse, LinearFamily, driven_modes
+from vibroimpact.identify.linear.modes import support_stiffness
+from vibroimpact.identify.linear.poles import first_pole, frequency_of, pole_of
+from vibroimpact.identify.spectra.window_leakage import spectral_kernel
 from vibroimpact.reduction.modal_model import ModalModel
-from vibroimpact.spectra.window_leakage import spectral_kernel
 
 from .broadband import FamilyMap, family_map
 from .equivalent_support import equivalent_support, free_pole

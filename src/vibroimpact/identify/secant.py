@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from vibroimpact.contact.laws import ContactLaws
-from vibroimpact.linear.support_groups import SupportDirection
+from vibroimpact.identify.linear.support_groups import SupportDirection
 from vibroimpact.reduction.modal_model import ModalModel
+from vibroimpact.structure.contact.laws import ContactLaws
 
 # Moments of a record that secant_support reads.
 MOMENTS = (

@@ -5,7 +5,7 @@ They include parts of the response that are not Gaussian, such as impacts.
 
 import numpy as np
 
-from vibroimpact.spectra.window_leakage import SpectralKernel
+from vibroimpact.identify.spectra.window_leakage import SpectralKernel
 
 
 def segment_covariance(changes: np.ndarray, averages: float) -> np.ndarray:

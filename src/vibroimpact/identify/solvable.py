@@ -8,7 +8,7 @@ from typing import TypeVar
 import numpy as np
 import xarray as xr
 
-from vibroimpact.linear.modes import PoleError
+from vibroimpact.identify.linear.modes import PoleError
 
 Result = TypeVar("Result")
 

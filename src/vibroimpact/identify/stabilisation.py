@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.linear.poles import frequency_of
+from vibroimpact.identify.linear.poles import frequency_of
 
 from .lscf import NormalEquations
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from vibroimpact.linear.poles import frequency_of
+from vibroimpact.identify.linear.poles import frequency_of
 
 from .lscf import NormalEquations
 from .stabilisation import StabilisationChart, stabilisation_chart

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import erfc
 
-from vibroimpact.linear.support_groups import SupportDirection
+from vibroimpact.identify.linear.support_groups import SupportDirection
 from vibroimpact.reduction.modal_model import ModalModel
 
 TOLERANCE = 1.0e-6

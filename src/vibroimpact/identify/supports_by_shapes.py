@@ -17,8 +17,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.linear.supported_structure import Observed, SupportedStructure
-from vibroimpact.spectra.window_leakage import SpectralKernel
+from vibroimpact.identify.linear.supported_structure import Observed, SupportedStructure
+from vibroimpact.identify.spectra.window_leakage import SpectralKernel
 
 from .estimate import FREQUENCY_ERROR
 from .ods import GAIN_ERROR

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.linear.supported_structure import Observed, SupportedStructure
-from vibroimpact.spectra.window_leakage import SpectralKernel, correlated_sum
+from vibroimpact.identify.linear.supported_structure import Observed, SupportedStructure
+from vibroimpact.identify.spectra.window_leakage import SpectralKernel, correlated_sum
 
 from .broadband import EXPONENT
 from .segment_scatter import widened

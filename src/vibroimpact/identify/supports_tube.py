@@ -9,11 +9,11 @@ from functools import cached_property
 
 import numpy as np
 
-from vibroimpact.linear.poles import frequency_of, pole_of
-from vibroimpact.linear.support_groups import SupportDirection
-from vibroimpact.linear.supported_structure import Observed, SupportedStructure
+from vibroimpact.identify.linear.poles import frequency_of, pole_of
+from vibroimpact.identify.linear.support_groups import SupportDirection
+from vibroimpact.identify.linear.supported_structure import Observed, SupportedStructure
+from vibroimpact.identify.spectra.window_leakage import spectral_kernel
 from vibroimpact.reduction.modal_model import ModalModel
-from vibroimpact.spectra.window_leakage import spectral_kernel
 
 from .peak import resonance
 from .reference_tube import STABLE_FRACTION, Bins, Sensors, compared_bins, on_grid, seen_band_Hz

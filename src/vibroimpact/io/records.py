@@ -2,7 +2,6 @@
 
 import csv
 import io
-import json
 import math
 import os
 import re
@@ -35,9 +34,6 @@ MOST_READ, FLOAT_BYTES = 10**9, 8
 MOST_TIMES_SMALLER, SMALL_BYTES = 100, 10**8
 
 FORMULA = re.compile(r"'*[=+\-@\t\r].")  # how a cell begins that a spreadsheet computes
-
-# What to do with a file that a user gave and that cannot be read; with a result, MAKE_AGAIN.
-GIVE_AGAIN = "copy or export it again, or give another file"
 
 
 def write_record(dataset: xr.Dataset, path: str | Path, names_kept: bool = False) -> None:
@@ -142,20 +138,13 @@ def _put_variables(
 
     names: {name of a variable: its name in the file} if they differ.
 
-    Returns the auxiliary coordinates that no variable refers to. An auxiliary coordinate is one
-    whose name is not that of a dimension.
+    Returns the auxiliary coordinates that no variable refers to.
     """
-    auxiliary = {
-        names.get(str(name), name): set(dataset[name].dims)
-        for name in dataset.coords
-        if name not in dataset.sizes or (name in names and name != TIME)
-    }
+    auxiliary = _auxiliary(dataset, names)
     named: set[str] = set()
     for name, variable in dataset.variables.items():
         values = variable.values
-        text = values.dtype.kind in "UO" and all(isinstance(value, str) for value in values.flat)
-        if not text and values.dtype.kind not in "fiu":
-            raise TypeError(f"'{name}' holds {values.dtype}: numbers and texts alone are written")
+        text = _is_text(str(name), values)
         attributes = dict(variable.attrs)
         if name not in dataset.coords:
             attributes |= _coordinates_attribute(variable.dims, auxiliary, named)
@@ -176,6 +165,23 @@ def _create(file, name, dtype, dims, attributes):
     stored.setncatts(attributes)
     stored.set_auto_maskandscale(False)
     return stored
+
+
+def _auxiliary(dataset: xr.Dataset, names: dict[str, str]) -> dict:
+    """Return {name in the file: dimensions} of the coordinates whose name is no dimension's."""
+    return {
+        names.get(str(name), name): set(dataset[name].dims)
+        for name in dataset.coords
+        if name not in dataset.sizes or (name in names and name != TIME)
+    }
+
+
+def _is_text(name: str, values: np.ndarray) -> bool:
+    """Return whether values are texts. Raises TypeError where they are no numbers either."""
+    text = values.dtype.kind in "UO" and all(isinstance(value, str) for value in values.flat)
+    if not text and values.dtype.kind not in "fiu":
+        raise TypeError(f"'{name}' holds {values.dtype}: numbers and texts alone are written")
+    return text
 
 
 def _coordinates_attribute(dims: Iterable, auxiliary: dict, named: set) -> dict[str, str]:
@@ -262,23 +268,6 @@ def read_attributes(path: str | Path) -> dict[str, Any]:
     """Return the global attributes of a file of write_record. Raises RecordError."""
     with _opened(path, MAKE_AGAIN) as file:
         return {name: file.getncattr(name) for name in file.ncattrs()}
-
-
-def read_dataset(path: str | Path, remedy: str = GIVE_AGAIN) -> xr.Dataset:
-    """Return the dataset of any netCDF file, decoded by the CF conventions; the time of a record is
-    called `time`, as in read_record.
-
-    remedy: for a file that cannot be read: GIVE_AGAIN for a file that a user gave, MAKE_AGAIN
-        for a result.
-    Raises RecordError.
-    """
-    try:
-        with xr.open_dataset(path, engine="netcdf4") as dataset:
-            own = {} if TIME in dataset.sizes else {TIME_IN_FILE: TIME}
-            names = {name: own[name] for name in (*dataset.variables, *dataset.dims) if name in own}
-            return dataset.load().rename(names)
-    except (OSError, RuntimeError) as error:
-        raise RecordError(f"{path}: cannot be read as netCDF ({error}): {remedy}") from error
 
 
 def read_given_dataset(path: str | Path, described: Iterable[str] = ()) -> xr.Dataset:
@@ -514,14 +503,6 @@ def write_text(text: str, path: str | Path) -> None:
     """
     with whole_file(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
-
-
-def read_json(path: str | Path) -> Any:
-    """Return the values of a JSON file. Raises RecordError when it is not there or is no JSON."""
-    try:
-        return json.loads(read_text(path))
-    except json.JSONDecodeError as error:
-        raise RecordError(f"{path}: is not JSON ({error}): {MAKE_AGAIN}") from error
 
 
 def read_table(path: str | Path, texts: Iterable[str] = ()) -> list[dict[str, Any]]:

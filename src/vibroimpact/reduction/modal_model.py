@@ -6,8 +6,8 @@ from functools import cached_property
 
 import numpy as np
 
-from vibroimpact.contact.laws import ContactLaws, LocalLaws
 from vibroimpact.excitation.fluid_elastic import FluidLaws
+from vibroimpact.structure.contact.laws import ContactLaws, LocalLaws
 
 # Fields whose axes are checked: name -> axis names. An axis has the same length in all fields.
 AXES = {

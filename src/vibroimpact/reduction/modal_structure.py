@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vibroimpact.contact.laws import LocalLaws
 from vibroimpact.io.units import TIME_DERIVATIVES
+from vibroimpact.structure.contact.laws import LocalLaws
 
 from .modal_model import ModalModel
 

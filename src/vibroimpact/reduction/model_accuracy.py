@@ -14,7 +14,7 @@ from scipy import linalg, sparse
 from vibroimpact.config.excitation import highest_frequency
 from vibroimpact.config.name_checks import TUBES
 from vibroimpact.config.stage_settings import ConfigPart
-from vibroimpact.contact.local_elements import element_laws
+from vibroimpact.structure.contact.local_elements import element_laws
 
 from .reduced_model import full_structure, keeps_all_modes, reduced_basis
 

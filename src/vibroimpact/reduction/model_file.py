@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from vibroimpact.contact.laws import ContactLaws, LocalLaws
 from vibroimpact.excitation.fluid_elastic import FluidLaws
 from vibroimpact.io.records import read_record, write_record
+from vibroimpact.structure.contact.laws import ContactLaws, LocalLaws
 
 from .modal_model import ModalModel
 from .model_variables import model_attributes

@@ -9,8 +9,6 @@ from scipy import linalg, sparse
 
 from vibroimpact.config.name_checks import TUBES
 from vibroimpact.config.stage_settings import ConfigPart
-from vibroimpact.contact.local_elements import element_laws, element_rows, split_damping
-from vibroimpact.contact.supports import contact_laws, contact_preload
 from vibroimpact.excitation.fluid_rows import fluid_fields
 from vibroimpact.excitation.force_vectors import (
     constant_force_vector,
@@ -21,6 +19,8 @@ from vibroimpact.excitation.force_vectors import (
 from vibroimpact.excitation.turbulence import drive_shapes
 from vibroimpact.geometry.centreline import SAME_PLACE_M
 from vibroimpact.io.memo import Memo, content_key
+from vibroimpact.structure.contact.local_elements import element_laws, element_rows, split_damping
+from vibroimpact.structure.contact.supports import contact_laws, contact_preload
 from vibroimpact.structure.definiteness import require_definite
 from vibroimpact.structure.point_structure import PointStructure, build_point_structure
 from vibroimpact.structure.rigid_motions import free_rigid_motions
@@ -406,6 +406,18 @@ def named_arc_length(structure: TubeStructure, config: ConfigPart, name: str) ->
     return structure.centreline.locate(config.points[name], f"point {name}")
 
 
+def _wanted_sensors(structure: Any, config: ConfigPart) -> list[tuple[str, str]]:
+    """Return the (point, direction) of the sensors: those of record.sensors. Without that section,
+    a structure that is no tube has one for every direction of every named point.
+    """
+    sensors = config.record.sensors
+    if sensors is not None:
+        return [(name, axis) for name in sensors.points for axis in sensors.directions]
+    if config.structure.kind in TUBES:
+        return []
+    return [(name, axis) for name, axes in structure.directions.items() for axis in axes]
+
+
 def _sensor_fields(
     structure: Any,
     shapes: np.ndarray,
@@ -413,21 +425,10 @@ def _sensor_fields(
     point_rows: Callable,
     gauges: Sequence[tuple[str, np.ndarray]],
 ) -> dict[str, Any]:
-    """Return the fields of the sensors, named "point.direction", and "point.strain" of the gauges.
-
-    There is one for every point and direction of record.sensors. Without that section, a structure
-    that is no tube has one for every direction of every named point.
-    """
-    tube = config.structure.kind in TUBES
-    sensors = config.record.sensors
-    if sensors is not None:
-        wanted = [(name, axis) for name in sensors.points for axis in sensors.directions]
-    elif tube:
-        wanted = []
-    else:
-        wanted = [(name, axis) for name, axes in structure.directions.items() for axis in axes]
+    """Return the fields of the sensors, "point.direction", and "point.strain" of the gauges."""
+    wanted = _wanted_sensors(structure, config)
     positions = [np.array(config.points.get(name, (0.0, 0.0, 0.0))) for name, _ in wanted]
-    if tube:
+    if config.structure.kind in TUBES:
         places = [named_arc_length(structure, config, name) for name, _ in wanted]
         positions = [structure.centreline.position(place) for place in places]
     rows = [AXES[axis] @ point_rows(name) for name, axis in wanted]

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
+from vibroimpact.diagnosis.verdict.content import Misfit, Verdict
 from vibroimpact.effects.effect import TESTS
 from vibroimpact.effects.places import place_in_words
 from vibroimpact.effects.registry import EFFECTS, effects_in_words
-from vibroimpact.verdict.content import Misfit, Verdict
 
 from .explanations import best_places, chance_text, explanations_of
 from .number_text import digits, percent
@@ -188,23 +188,25 @@ def _effects(verdict):
             "law fits": effect.law_fits or "",
             "where": _where(effect.location or "all", known),
         }
-        values = [(name, for_reading(row)) for name, row in effect.parameters.items()]
-        for name, value in values or [("", None)]:
-            rows.append(
-                {
-                    **head,
-                    "parameter": name.replace("_", " "),
-                    "value": digits(value["value"]) if value else "",
-                    "90 % interval": _interval(value) if value else "",
-                    "unit": unit_text(value["unit"]).strip() or "-" if value else "",
-                }
-            )
+        for cells in [*map(_parameter, effect.parameters.items())] or [NO_PARAMETER]:
+            rows.append({**head, **cells})
             head = dict.fromkeys(head, "")
-    wanted = {
-        "family": any(effect.family for effect in shown),
-        "law fits": any(effect.law_fits for effect in shown),
+    empty = [name for name in ("family", "law fits") if not any(row[name] for row in rows)]
+    return table_of(rows, empty)
+
+
+NO_PARAMETER = dict.fromkeys(("parameter", "value", "90 % interval", "unit"), "")
+
+
+def _parameter(item):
+    """Return the cells of a (name, value) of an effect."""
+    name, value = item[0], for_reading(item[1])
+    return {
+        "parameter": name.replace("_", " "),
+        "value": digits(value["value"]),
+        "90 % interval": _interval(value),
+        "unit": unit_text(value["unit"]).strip() or "-",
     }
-    return table_of(rows, [column for column, there in wanted.items() if not there])
 
 
 def _interval(value):

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from vibroimpact.diagnosis.verdict.content import Verdict
 from vibroimpact.effects.registry import effects_in_words
-from vibroimpact.verdict.content import Verdict
 
 NOTHING = "nothing is missing"
 LEAST_SHOWN = 0.005

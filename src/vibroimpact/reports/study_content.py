@@ -9,7 +9,7 @@ from typing import Any
 import yaml
 
 import vibroimpact
-from vibroimpact.wear.life import WearRow
+from vibroimpact.study.wear.life import WearRow
 
 from .equivalent_answer import ALL_SUPPORTS, Answer
 from .number_text import digits

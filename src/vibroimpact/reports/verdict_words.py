@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
+from vibroimpact.diagnosis.verdict.content import Estimate, Verdict, not_run_sentence
 from vibroimpact.effects.places import at_place
 from vibroimpact.effects.registry import effects_in_words
 from vibroimpact.io.display_units import display_unit
-from vibroimpact.verdict.content import Estimate, Verdict, not_run_sentence
 
 from .explanations import NOTHING, chance_text, explanations_of, not_explained
 from .number_text import digits, percent
@@ -166,9 +166,8 @@ def judgement(verdict: Verdict, row: dict, first: bool) -> str:
     row: of verdict.ranking in plain values; first: whether it is the first of these effects.
     """
     ids, score, closed = sorted(row["ids"]), row["heldout_score"], row["closed_fraction"]
-    shown = sorted(effect.id for effect in verdict.shown_effects())
-    withdrawn = verdict.withdrawn.effects if verdict.withdrawn else []
-    if ids == sorted(effect.id for effect in withdrawn) and withdrawn:
+    shown = _ids(verdict.shown_effects())
+    if verdict.withdrawn and ids == _ids(verdict.withdrawn.effects) != []:
         return "makes records worse, or hardly better"
     if ids == shown and first:
         return "the most probable" if verdict.verdict == "ambiguous" else "named"
@@ -184,9 +183,17 @@ def judgement(verdict: Verdict, row: dict, first: bool) -> str:
         return "makes the misfit grow"
     if score <= 0.0:
         return "gains nothing on records that it was not fitted to"
+    return _gains_little(verdict, bool(shown))
+
+
+def _gains_little(verdict: Verdict, shown: bool) -> str:
     if verdict.verdict == "none":
         return "gains no more than small errors of a right model do"
     return "explains less" if shown else "leaves a difference beyond chance"
+
+
+def _ids(effects: Iterable) -> list[str]:
+    return sorted(effect.id for effect in effects)
 
 
 def next_steps(verdict: Verdict, model: str) -> list[dict]:

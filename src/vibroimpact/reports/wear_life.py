@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import Any
 
-from vibroimpact.wear.life import WearRow, deepest, wear_rank
+from vibroimpact.study.wear.life import WearRow, deepest, wear_rank
 
 from .number_text import digits
 from .study_tables import span

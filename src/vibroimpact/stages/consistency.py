@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from vibroimpact.config.stage_settings import StageSettings
+from vibroimpact.identify.linear.support_groups import unreached_supports
 from vibroimpact.io.provenance import file_attributes
 from vibroimpact.io.records import write_record, write_table
-from vibroimpact.linear.support_groups import unreached_supports
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.study.agreement_dataset import consistency_dataset
 from vibroimpact.study.case_files import read_estimates

@@ -7,11 +7,11 @@ from typing import Any
 
 from vibroimpact.config.schema import Config
 from vibroimpact.diagnosis.identified.structure_file import model_from
-from vibroimpact.figures.diagnosis.sheets import diagnosis_figures
-from vibroimpact.figures.drawing import save_plots
+from vibroimpact.diagnosis.verdict.content import read_verdict
 from vibroimpact.io.records import read_record, write_text
 from vibroimpact.reports.discrepancy_page import FREE_RUNS, NOISE, discrepancy_page
-from vibroimpact.verdict.content import read_verdict
+from vibroimpact.reports.figures.diagnosis.sheets import diagnosis_figures
+from vibroimpact.reports.figures.drawing import save_plots
 
 
 def make(given: Any, made: Any, params: Any) -> None:

@@ -8,15 +8,15 @@ from typing import Any
 
 from vibroimpact.config.reading import check_config
 from vibroimpact.config.stage_keys import answer_digest
-from vibroimpact.figures.drawing import save_plots
-from vibroimpact.figures.interactive.measured_plots import measured_plots
-from vibroimpact.figures.interactive.pictures import pictures
-from vibroimpact.figures.study.measured import measured_figures, study_beside
+from vibroimpact.equivalent_support.measured.equivalent_of import equivalent_of
+from vibroimpact.equivalent_support.measured.files import write_measured
 from vibroimpact.io.provenance import file_attributes
 from vibroimpact.io.records import write_text
-from vibroimpact.measured_support.equivalent_of import equivalent_of
-from vibroimpact.measured_support.files import write_measured
 from vibroimpact.reports.captions import read_caption
+from vibroimpact.reports.figures.drawing import save_plots
+from vibroimpact.reports.figures.interactive.measured_plots import measured_plots
+from vibroimpact.reports.figures.interactive.pictures import pictures
+from vibroimpact.reports.figures.study.measured import measured_figures, study_beside
 from vibroimpact.reports.measured_content import measured_content
 from vibroimpact.reports.study_page import study_page
 from vibroimpact.study.headline import flag_sentences

@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.figures.drawing import save_plots
-from vibroimpact.figures.study import checks, equivalent
 from vibroimpact.io.records import read_table
 from vibroimpact.reduction.model_file import read_model
+from vibroimpact.reports.figures.drawing import save_plots
+from vibroimpact.reports.figures.study import checks, equivalent
 from vibroimpact.study.case_files import read_case
 
 

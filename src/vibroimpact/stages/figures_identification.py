@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.figures.drawing import save_plots
-from vibroimpact.figures.study import broadband, poles, shapes, stabilisation
-from vibroimpact.figures.study.cases_of_gap import cases_of_gap, shown_gap
 from vibroimpact.io.records import read_table
 from vibroimpact.reduction.model_file import read_model
+from vibroimpact.reports.figures.drawing import save_plots
+from vibroimpact.reports.figures.study import broadband, poles, shapes, stabilisation
+from vibroimpact.reports.figures.study.cases_of_gap import cases_of_gap, shown_gap
 from vibroimpact.study.case_files import read_case
 
 

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.figures.drawing import save_plots
-from vibroimpact.figures.study import basis, contact, tube
 from vibroimpact.io.records import read_table
+from vibroimpact.reports.figures.drawing import save_plots
+from vibroimpact.reports.figures.study import basis, contact, tube
 from vibroimpact.structure.tube import build_structure
 
 

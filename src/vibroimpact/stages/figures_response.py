@@ -7,9 +7,9 @@ from typing import Any
 
 from vibroimpact.campaign.file import read_campaign
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.figures.drawing import save_plots
-from vibroimpact.figures.study import overlay, psd_table, response
 from vibroimpact.reduction.model_file import read_model
+from vibroimpact.reports.figures.drawing import save_plots
+from vibroimpact.reports.figures.study import overlay, psd_table, response
 from vibroimpact.study.case_files import read_case
 
 

@@ -9,9 +9,9 @@ from typing import Any
 from vibroimpact.campaign.file import write_campaign
 from vibroimpact.campaign.importing.assemble import import_folder
 from vibroimpact.campaign.importing.report import write_report
-from vibroimpact.figures.discrepancy.quicklook import quicklook
-from vibroimpact.figures.drawing import save_plots
 from vibroimpact.io.signal_files.signals import ImportProblem
+from vibroimpact.reports.figures.discrepancy.quicklook import quicklook
+from vibroimpact.reports.figures.drawing import save_plots
 
 
 def make(given: Any, made: Any, params: Any) -> None:

@@ -8,9 +8,9 @@ from typing import Any
 
 from vibroimpact.campaign.checks.file_checks import COLUMNS, check_file
 from vibroimpact.campaign.importing.report import checks_text
-from vibroimpact.figures.discrepancy.quicklook import quicklook
-from vibroimpact.figures.drawing import save_plots
 from vibroimpact.io.records import write_table, write_text
+from vibroimpact.reports.figures.discrepancy.quicklook import quicklook
+from vibroimpact.reports.figures.drawing import save_plots
 
 
 def make(given: Any, made: Any, params: Any) -> None:

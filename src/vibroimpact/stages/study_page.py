@@ -7,21 +7,25 @@ from pathlib import Path
 from typing import Any
 
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.figures.interactive.pictures import pictures
-from vibroimpact.figures.interactive.study_plots import StudyFiles, direction_of, study_plots
-from vibroimpact.figures.study.checks import limits
 from vibroimpact.io.records import read_attributes, read_table, write_table, write_text
 from vibroimpact.reduction.model_accuracy import mesh_warnings
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.reports.captions import read_caption
 from vibroimpact.reports.equivalent_answer import answers, unmoved
+from vibroimpact.reports.figures.interactive.pictures import pictures
+from vibroimpact.reports.figures.interactive.study_plots import (
+    StudyFiles,
+    direction_of,
+    study_plots,
+)
+from vibroimpact.reports.figures.study.checks import limits
 from vibroimpact.reports.study_content import StudyContent, provenance
 from vibroimpact.reports.study_page import study_page
 from vibroimpact.reports.study_statistics import study_statistics
 from vibroimpact.study.case_files import read_case
 from vibroimpact.study.headline import flag_sentences
 from vibroimpact.study.timing import timing_so_far
-from vibroimpact.wear.life import WearRow, wear_rows
+from vibroimpact.study.wear.life import WearRow, wear_rows
 
 
 def make(given: Any, made: Any, params: Any) -> None:

@@ -7,8 +7,8 @@ from typing import Any
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.equivalent_support import supports_prediction as supports
 from vibroimpact.identify.identify_case import RECORD_READ, SPECTRA_READ
+from vibroimpact.identify.linear.support_groups import ALL
 from vibroimpact.io.records import read_table, write_table
-from vibroimpact.linear.support_groups import ALL
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.study.case_files import read_case
 from vibroimpact.study.equivalent_table import EQUIVALENT_COLUMNS

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.figures.drawing import save_plots
-from vibroimpact.figures.study.timing import timing
 from vibroimpact.io.records import write_table
+from vibroimpact.reports.figures.drawing import save_plots
+from vibroimpact.reports.figures.study.timing import timing
 from vibroimpact.study.timing import study_timing
 
 

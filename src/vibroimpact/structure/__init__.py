@@ -1,1 +1,4 @@
-"""The linear structure without contact: a tube, masses and springs, or matrices."""
+"""The linear structure: a tube, masses and springs, or matrices; `contact` holds its supports.
+
+Imports the configuration and the geometry.
+"""

@@ -161,13 +161,9 @@ def _choose_op4(path: Path, names: list[str], name: str, op4_set: str | None) ->
         fitting = fitting[int(op4_set[2:]) - 1 :][:1]
     if len(fitting) > 1:
         found = [names[place] for place in fitting]
-        sets = [
-            each[1:] + (str(found[: index + 1].count(each)) if found.count(each) > 1 else "")
-            for index, each in enumerate(found)
-        ]
         raise MatrixFileError(
             f"{path}: {', '.join(found)} could each be the {name} matrix: choose with"
-            f" structure.op4_set: {' or '.join(sets)}"
+            f" structure.op4_set: {' or '.join(_sets_of(found))}"
         )
     letter = letters[-1].upper()
     remedy = f"name the {name} matrix {letter}, or as Nastran does, {letter}GG"
@@ -176,6 +172,14 @@ def _choose_op4(path: Path, names: list[str], name: str, op4_set: str | None) ->
             f"{path}: holds {', '.join(names)}: op4_set = {op4_set} finds no {name} matrix there"
         )
     return fitting[0] if fitting else names.index(_choose(path, names, [], remedy))
+
+
+def _sets_of(names: list[str]) -> list[str]:
+    """Return the set of each matrix, with its number among those of one name."""
+    return [
+        name[1:] + (str(names[: index + 1].count(name)) if names.count(name) > 1 else "")
+        for index, name in enumerate(names)
+    ]
 
 
 def _choose(path: Path, names: list[str], fitting: list[str], remedy: str) -> str:

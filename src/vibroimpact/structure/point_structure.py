@@ -7,7 +7,7 @@ import numpy as np
 from scipy import sparse
 
 from vibroimpact.config.stage_settings import ConfigPart
-from vibroimpact.contact.supports import ContactPoints, contacts_at_points
+from vibroimpact.structure.contact.supports import ContactPoints, contacts_at_points
 
 from .massless import Condensed, condense_massless
 from .matrix_files import MatrixFileError, read_matrix

@@ -7,7 +7,6 @@ import numpy as np
 from scipy import sparse
 
 from vibroimpact.config.stage_settings import ConfigPart
-from vibroimpact.contact.supports import ContactPoints, place_contact_points
 from vibroimpact.geometry.centreline import (
     SAME_PLACE_M,
     Centreline,
@@ -17,6 +16,7 @@ from vibroimpact.geometry.directions import transverse_directions, unit_vector
 from vibroimpact.geometry.mesh import halved_mesh, mesh_arc_lengths
 from vibroimpact.geometry.sections import ROUND, section_kind
 from vibroimpact.io.memo import Memo
+from vibroimpact.structure.contact.supports import ContactPoints, place_contact_points
 
 from .beam_elements import DOF_PER_NODE, Beam, element_matrices, interpolation, section_beam
 from .fluid import FluidStretch, beams_in_fluid, fluid_stretches, transverse_only

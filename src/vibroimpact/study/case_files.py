@@ -9,8 +9,8 @@ from pathlib import Path
 import xarray as xr
 
 from vibroimpact.identify.estimate import METHODS, table_rows, unresolved
+from vibroimpact.identify.linear.support_groups import reached_supports
 from vibroimpact.io.records import MAKE_AGAIN, RecordError, read_record, read_table
-from vibroimpact.linear.support_groups import reached_supports
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .cases import case_from_id

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from vibroimpact.spectra.welch import (
+from vibroimpact.identify.spectra.welch import (
     SegmentTransform,
     driven_axes,
     effective_averages,

@@ -16,9 +16,10 @@ from vibroimpact.config.schema import Basis, Config
 from vibroimpact.excitation.fluid_elastic import outside_fit
 from vibroimpact.geometry.sections import outer_width
 from vibroimpact.identify.guards import FEWEST_AVERAGES, few_averages
+from vibroimpact.identify.linear.support_groups import reached_supports
+from vibroimpact.identify.spectra.welch import driven_axis, effective_averages
 from vibroimpact.integration.contact_convergence import IntegrationError, checked_contraction
 from vibroimpact.integration.step_stability import require_stable_step
-from vibroimpact.linear.support_groups import reached_supports
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.reduction.model_accuracy import (
     ModelAccuracyError,
@@ -34,7 +35,6 @@ from vibroimpact.reduction.reduced_model import (
     keeps_all_modes,
     point_rows_of,
 )
-from vibroimpact.spectra.welch import driven_axis, effective_averages
 
 # A larger structure takes minutes to reduce: its job says what is wrong with it.
 MOST_DOFS = 3000

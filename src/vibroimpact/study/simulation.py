@@ -74,36 +74,38 @@ def simulate_cases(
         }
     for first in range(0, len(cases), LANES):
         batch = cases[first : first + LANES]
-        gap = np.array([case.gap_m for case in batch])
-        offset = np.stack([imperfection(config, model, case) for case in batch], axis=-1)
-        offset, rest = seated(model, schedule, gap, offset)
-        if model.presses_at_rest:  # at zero, what presses would hit the structure at the start
-            rest = rest_state(model, schedule, gap, offset, rest)
-        with nullcontext() if writer is None else writer(schedule, batch) as put:
-            try:
-                lanes = integrate_batch(
-                    model,
-                    schedule,
-                    gap=gap,
-                    imperfection=offset,
-                    drive=drive_of(batch, forces, stopwatch),
-                    receive=(
-                        None
-                        if put is None
-                        else lambda at, *pieces, put=put: put(at, time_series(model, *pieces))
-                    ),
-                    initial=rest,
-                )
-            except IntegrationError as error:
-                raise error.of(batch) from error
+        lanes = _integrated(
+            config, model, schedule, batch, drive_of(batch, forces, stopwatch), writer
+        )
         stopwatch.add(lanes.stopwatch)
         for lane, case in enumerate(batch):
             yield case, record_dataset(config, model, schedule, lanes, lane, case)
 
 
-def seed_force(config: Any, schedule: Schedule, seed: int) -> ForceStream:
-    """Return the force of a seed in the first channel, see seed_forces."""
-    return seed_forces(config, schedule, seed, 1)[0]
+def _integrated(config, model, schedule, batch, drive, writer) -> BatchResult:
+    """Return the result of a batch of cases, from rest or static equilibrium on."""
+    gap = np.array([case.gap_m for case in batch])
+    offset = np.stack([imperfection(config, model, case) for case in batch], axis=-1)
+    offset, rest = seated(model, schedule, gap, offset)
+    if model.presses_at_rest:  # at zero, what presses would hit the structure at the start
+        rest = rest_state(model, schedule, gap, offset, rest)
+    with nullcontext() if writer is None else writer(schedule, batch) as put:
+        try:
+            return integrate_batch(
+                model,
+                schedule,
+                gap=gap,
+                imperfection=offset,
+                drive=drive,
+                receive=(
+                    None
+                    if put is None
+                    else lambda at, *pieces, put=put: put(at, time_series(model, *pieces))
+                ),
+                initial=rest,
+            )
+        except IntegrationError as error:
+            raise error.of(batch) from error
 
 
 def seed_forces(config: Any, schedule: Schedule, seed: int, channels: int) -> list[ForceStream]:

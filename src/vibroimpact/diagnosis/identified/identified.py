@@ -13,7 +13,7 @@ import xarray as xr
 from vibroimpact.campaign.signals import transfer_band
 from vibroimpact.config.measured_structure import MeasuredStructure
 from vibroimpact.effects.registry import EFFECTS
-from vibroimpact.spectra.periodic_lines import LevelLines
+from vibroimpact.identify.spectra.periodic_lines import LevelLines
 
 from ..decision import Decision
 from ..free_runs import FreeRuns

@@ -22,8 +22,8 @@ from scipy.fft import next_fast_len
 
 from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.campaign.signals import campaign_signals
+from vibroimpact.identify.spectra.periodic_lines import LevelLines, level_lines, line_power
 from vibroimpact.reduction.modal_structure import IdentifiedModes
-from vibroimpact.spectra.periodic_lines import LevelLines, level_lines, line_power
 
 SAME_LOAD = 1.05  # records within this factor repeat one level
 FEWEST_FITTED = 3  # fewer fitted levels leave none to try a name on

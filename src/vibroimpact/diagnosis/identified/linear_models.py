@@ -18,8 +18,8 @@ import numpy as np
 
 from vibroimpact.identify.least_squares import minimise_by_differences
 from vibroimpact.identify.modal_fit import Ridge, identify_modes, pack, refine_modes, unpack
+from vibroimpact.identify.spectra.periodic_lines import LevelLines
 from vibroimpact.reduction.modal_structure import IdentifiedModes
-from vibroimpact.spectra.periodic_lines import LevelLines
 
 from .levels import naming_split
 from .trial import Records, Trial

@@ -21,7 +21,7 @@ from vibroimpact.campaign.signals import (
     common_period,
     transfer_band,
 )
-from vibroimpact.spectra.periodic_lines import LevelLines
+from vibroimpact.identify.spectra.periodic_lines import LevelLines
 
 from ..measurement.usable import Refused, checked_campaign, refuse
 from .levels import noise_share, quick_length

@@ -12,8 +12,8 @@ import xarray as xr
 from vibroimpact.campaign.file import PARALLEL, force_units
 from vibroimpact.config.measured_structure import ELSEWHERE, MeasuredStructure
 from vibroimpact.config.reading import ConfigError
+from vibroimpact.identify.spectra.periodic_lines import LevelLines
 from vibroimpact.io.units import TIME_DERIVATIVES, si_unit
-from vibroimpact.spectra.periodic_lines import LevelLines
 
 from .local_laws import LAWS
 

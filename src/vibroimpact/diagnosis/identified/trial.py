@@ -13,15 +13,15 @@ from functools import cached_property
 import numpy as np
 from scipy.fft import next_fast_len
 
-from vibroimpact.contact.laws import LocalLaws
 from vibroimpact.diagnosis.run_cost import count_simulated
 from vibroimpact.identify.modal_fit import channel_scale
+from vibroimpact.identify.spectra.periodic_lines import LevelLines
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.decimation import RATIO
 from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.integration.steady_response import PeriodicDrive, steady_elements
 from vibroimpact.reduction.modal_structure import IdentifiedModes, modal_model
-from vibroimpact.spectra.periodic_lines import LevelLines
+from vibroimpact.structure.contact.laws import LocalLaws
 
 from .local_laws import LAWS, LocalLaw
 

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import yaml
 
-from vibroimpact.contact.local_elements import COLUMNS
 from vibroimpact.io.records import plain_values
+from vibroimpact.structure.contact.local_elements import COLUMNS
 
 from .trial import Trial
 

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from vibroimpact.config.profiles import Lobes
-from vibroimpact.contact.outline import radial_gap
+from vibroimpact.structure.contact.outline import radial_gap
 
 from ..export_formats.frames import plain_name
 from ..export_formats.unit_system import UnitSystem

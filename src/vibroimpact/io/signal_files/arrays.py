@@ -55,18 +55,7 @@ def signals_of_arrays(arrays: Arrays) -> list[Signal]:
         for name, values in arrays.columns.items()
         if name != stamps and name not in RATE_NAMES and np.size(values) > 1
     }
-    longest = max((rows.shape[-1] for rows in signals.values()), default=0)
-    if longest == 0:
-        raise ImportProblem(
-            f"{arrays.path}: holds no signal: no array of numbers but {', '.join(arrays.columns)}"
-            if arrays.columns
-            else f"{arrays.path}: holds no array of numbers: export the time histories"
-        )
-    left_out = arrays.left_out | {
-        name: f"has {rows.shape[-1]} samples, the longest signal {longest}"
-        for name, rows in signals.items()
-        if rows.shape[-1] != longest
-    }
+    longest, left_out = _of_other_length(arrays, signals)
     found = []
     for name, rows in signals.items():
         if name in left_out:
@@ -93,6 +82,23 @@ def signals_of_arrays(arrays: Arrays) -> list[Signal]:
                 )
             )
     return found
+
+
+def _of_other_length(arrays: Arrays, signals: dict[str, np.ndarray]) -> tuple[int, dict[str, str]]:
+    """Return (samples of the longest signal, {name: why it is left out}). Raises ImportProblem."""
+    if not signals:
+        raise ImportProblem(
+            f"{arrays.path}: holds no signal: no array of numbers but {', '.join(arrays.columns)}"
+            if arrays.columns
+            else f"{arrays.path}: holds no array of numbers: export the time histories"
+        )
+    samples = {name: rows.shape[-1] for name, rows in signals.items()}
+    longest = max(samples.values())
+    return longest, arrays.left_out | {
+        name: f"has {count} samples, the longest signal {longest}"
+        for name, count in samples.items()
+        if count != longest
+    }
 
 
 def _stated_rate(arrays):

@@ -29,16 +29,7 @@ def read_csv(path: str | Path) -> list[Signal]:
     or tab, decimal commas are read. Raises ImportProblem for a table without names, two columns of
     one name and where a cell is no number.
     """
-    text, note = read_encoded(path)
-    if text.startswith(LABVIEW):
-        raise ImportProblem(f"{path}: {UNREAD['.lvm']}")
-    rows = enumerate(io.StringIO(text, newline=None), start=1)
-    numbered = [(number, line.rstrip("\n")) for number, line in rows if line.strip()]
-    lines = [(number, line) for number, line in numbered if line[0] not in COMMENT]
-    if len(lines) < 2:
-        raise ImportProblem(
-            f"{path}: holds no table: a header line with names, then one line per sample"
-        )
+    numbered, lines, note = _numbered_lines(path)
     separator = next((mark for mark in "\t;," if mark in lines[1][1]), None)
     header = _header(path, numbered, lines, separator)
     if len(lines) < 2:
@@ -59,6 +50,23 @@ def read_csv(path: str | Path) -> list[Signal]:
             lines=np.array([number for number, _ in lines]),
         )
     )
+
+
+def _numbered_lines(path):
+    """Return [(number, line)] of a file, those that are no comment, and a note on its encoding.
+    Raises ImportProblem where there is no table.
+    """
+    text, note = read_encoded(path)
+    if text.startswith(LABVIEW):
+        raise ImportProblem(f"{path}: {UNREAD['.lvm']}")
+    rows = enumerate(io.StringIO(text, newline=None), start=1)
+    numbered = [(number, line.rstrip("\n")) for number, line in rows if line.strip()]
+    lines = [(number, line) for number, line in numbered if line[0] not in COMMENT]
+    if len(lines) < 2:
+        raise ImportProblem(
+            f"{path}: holds no table: a header line with names, then one line per sample"
+        )
+    return numbered, lines, note
 
 
 def _header(path, numbered, lines, separator):

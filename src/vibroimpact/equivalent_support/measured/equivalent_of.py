@@ -1,0 +1,196 @@
+"""The equivalent support of a measured tube: a campaign and a model in, k and c out.
+
+Each record becomes the spectra of a case, and the functions of a study do the rest. No contact is
+simulated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from vibroimpact.campaign.file import CampaignError, read_campaign
+from vibroimpact.campaign.signals import CampaignSignals, campaign_signals
+from vibroimpact.config.reading import load_config
+from vibroimpact.config.schema import Config
+from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.identify.estimate import table_rows
+from vibroimpact.identify.identify_case import identify_case
+from vibroimpact.identify.linear.support_groups import unreached_supports
+from vibroimpact.reduction.modal_model import ModalModel
+from vibroimpact.study.agreement_dataset import consistency_dataset
+from vibroimpact.study.cases import Case
+from vibroimpact.study.equivalent_table import equivalent_rows
+from vibroimpact.study.method_agreement import consistency_rows, summary_rows
+
+from .forces import KnownForce
+from .levels import SAME_LOAD, SAME_RESPONSE, cases_of_records, gaps_of_records
+from .sensors import measured_model
+from .settings import measured_settings, with_grid
+from .spectra import displacements, first_sample, measured_spectra
+from .usable import identification_problems, signal_problems
+
+Rows = list[dict[str, Any]]
+LOAD, RESPONSE = "load_rms_N", "response_rms_m"  # columns that a level can be
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredSupports:
+    """The equivalent supports of a measured tube.
+
+    config: the model's configuration with the records and sensors of the campaign.
+    model: linear model whose sensors are those of the campaign.
+    force: the known spectra of the forces.
+    records: {Case: name of the record}.
+    spectra, curves: {Case: Dataset}, as of study.case_spectra and identify.identify_case.
+    rows, summary, equivalent: those of consistency.csv, consistency_summary.csv, equivalent.csv.
+    levels: "load_rms_N", or "response_rms_m" if no record has a load: the rows then hold the RMS
+        of the displacement, in m, in the place of the load.
+    notes: sentences on the assumptions.
+    """
+
+    config: ConfigPart
+    model: ModalModel
+    force: KnownForce
+    records: Mapping[Case, str]
+    spectra: Mapping[Case, xr.Dataset]
+    curves: Mapping[Case, xr.Dataset]
+    rows: Rows
+    summary: Rows
+    equivalent: Rows
+    levels: str
+    notes: tuple[str, ...]
+
+    def to_dataset(self) -> xr.Dataset:
+        """Return the estimates, their medians and verdicts, as the file consistency.nc of a study.
+
+        The coordinate `load` is in m if `levels` is the response.
+        """
+        found = consistency_dataset(self.rows, self.summary)
+        if self.levels == RESPONSE:
+            found["load"].attrs = {"units": "m", "long_name": "RMS of the displacement"}
+        return found
+
+
+def equivalent_of(
+    campaign: xr.Dataset | str | Path, model: Config | str | Path
+) -> MeasuredSupports:
+    """Return the equivalent supports of a measured tube, by the methods of a study.
+
+    campaign: Dataset or file. Its force may be missing: pole and shape then give k and c.
+    model: configuration of the tube with its supports, or its YAML file. Its bands and groups of
+        section identification are used if it has one.
+
+    Raises CampaignError or RecordError for a campaign that can not be used, ConfigError for a
+    model; the message states the remedy.
+    """
+    config = model if isinstance(model, Config) else load_config(model)
+    if not isinstance(campaign, xr.Dataset):
+        campaign = read_campaign(campaign, force_needed=False)
+    _require(identification_problems(config, campaign))
+    signals = campaign_signals(campaign)
+    _require(signal_problems(signals, config.spectra.segment_s))
+    try:
+        linear, force, used = measured_model(config, campaign, signals)
+    except ValueError as error:  # off the tube, or no support is reached
+        raise CampaignError(str(error)) from error
+    settings = measured_settings(config, signals, linear, force, used)
+    level, name = _levels(settings, signals, linear, used)
+    gaps = gaps_of_records(signals.gap, config.grid.gap_m)
+    cases = cases_of_records(level, gaps, SAME_LOAD if name == LOAD else SAME_RESPONSE)
+    settings = with_grid(settings, cases)
+    found = {
+        case: measured_spectra(settings, signals, linear, force, used, (record, case))
+        for record, case in enumerate(cases)
+    }
+    return _identified(settings, linear, force, found, name, _notes(config, signals, force, used))
+
+
+def _identified(
+    config: ConfigPart,
+    model: ModalModel,
+    force: KnownForce,
+    spectra: Mapping[Case, xr.Dataset],
+    levels: str,
+    notes: tuple[str, ...],
+) -> MeasuredSupports:
+    """Return the MeasuredSupports of the spectra of all records."""
+    tables, curves = [], {}
+    for case, dataset in spectra.items():
+        estimates, curves[case] = identify_case(config, model, None, dataset)
+        tables.append(table_rows(estimates, dataset.attrs))
+    rows = consistency_rows(tables)
+    summary = summary_rows(rows)
+    unreached = unreached_supports(model, config.identification.groups)
+    return MeasuredSupports(
+        config=config,
+        model=model,
+        force=force,
+        records={case: str(dataset.attrs["record"]) for case, dataset in spectra.items()},
+        spectra=spectra,
+        curves=curves,
+        rows=rows,
+        summary=summary,
+        equivalent=equivalent_rows(summary, unreached),
+        levels=levels,
+        notes=notes,
+    )
+
+
+def _require(problems: Iterable[str]) -> None:
+    """Raise CampaignError with every problem, a line each."""
+    found = list(problems)
+    if found:
+        raise CampaignError("\n".join(found))
+
+
+def _levels(
+    config: ConfigPart, signals: CampaignSignals, model: ModalModel, used: np.ndarray
+) -> tuple[np.ndarray, str]:
+    """Return (level (record,), name of the column): loads, or the motion of the response point."""
+    if np.isfinite(signals.load_rms).all() and (signals.load_rms > 0.0).all():
+        return signals.load_rms, LOAD
+    points = [name.rpartition(".")[0] for name in model.sensor_names]
+    row = points.index(config.identification.response_point)
+    first = first_sample(signals, model)
+    moved = [
+        displacements(config, signals, record, used, first)[row]
+        for record in range(len(signals.records))
+    ]
+    return np.array([np.sqrt(np.mean(series**2)) for series in moved]), RESPONSE
+
+
+def _notes(
+    config: Config, signals: CampaignSignals, force: KnownForce, used: np.ndarray
+) -> tuple[str, ...]:
+    """Return the assumptions in sentences."""
+    notes = []
+    if not force.known:
+        notes.append(
+            "No force was measured: k and c come from pole and shape. Every mode was taken to be"
+            " pushed alike."
+        )
+    elif not signals.forces:
+        notes.append("No force was measured: it was taken to be the turbulence of the model.")
+    elif len(signals.forces) > 1:
+        notes.append(
+            f"The {len(signals.forces)} forces act together, with the covariance that they have"
+            " over their band."
+        )
+    left = [name for index, name in enumerate(signals.channels) if index not in set(used)]
+    if left:
+        notes.append(f"Not used, because the force does not move them: {', '.join(left)}.")
+    if not np.isfinite(signals.gap).all():
+        gap = 1e3 * max(config.grid.gap_m)
+        notes.append(f"Records without a gap were given that of the model, {gap:.4g} mm.")
+    if signals.forces and signals.period_samples:
+        notes.append(
+            "The force repeats: the scatter over segments is too small. Give spectra.segment_s of"
+            " several periods."
+        )
+    return tuple(notes)

@@ -1,0 +1,124 @@
+"""The forces on a measured structure, as far as they are known: places and spectrum.
+
+Measured forces act at their places, with the covariance that they have over the excited band.
+Without one, turbulence of the model acts with its spectrum. Without either, every mode that the
+model's excitation reaches is pushed alike and independently (white noise per unit of mass), and
+nothing is said of the spectrum: pole and shape depend little on it.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from vibroimpact.campaign.signals import CampaignSignals, excited_band
+from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.excitation.line_force_spectrum import relative_psd as turbulence_psd
+from vibroimpact.geometry.sections import outer_width
+from vibroimpact.identify.linear.support_groups import reached_supports
+from vibroimpact.identify.spectra.welch import effective_averages, segment_spectra
+from vibroimpact.reduction.modal_model import ModalModel
+
+SMALLEST_PART = 1.0e-4  # of the variance of all forces
+PUSHED_BEYOND = 1.5  # modes up to this multiple of the highest frequency are pushed
+HIGHEST = 0.4  # of the sampling frequency, where no force says how far records are of use
+# Variance of a PSD over its mean, in that of chance: above it a force is not taken as white.
+NOT_WHITE = 1.3
+SMOOTHED = np.array([0.25, 0.5, 0.25])  # over lines, no wider than the analysis window
+
+
+@dataclass(frozen=True)
+class KnownForce:
+    """The forces, as far as they are known.
+
+    known: whether their places and spectrum are.
+    band_Hz: the band of their power.
+    drive_shapes: (mode, force) of independent forces with one spectrum.
+    stated_psd: function of (frequency,) in Hz that gives their relative PSD (frequency,), if it
+        is stated and not measured.
+    """
+
+    known: bool
+    band_Hz: tuple[float, float]
+    drive_shapes: np.ndarray
+    stated_psd: Callable[[np.ndarray], np.ndarray] | None = None
+
+
+def known_force(
+    config: ConfigPart, signals: CampaignSignals, model: ModalModel, own_drive: np.ndarray
+) -> KnownForce:
+    """Return the KnownForce of a campaign.
+
+    config: the model's configuration.
+    model: attached to the campaign; its drives are the measured forces.
+    own_drive: (mode, force) drives of the model's own excitation.
+
+    Raises ValueError if that reaches no support.
+    """
+    if signals.forces:
+        padded, _ = signals.padded(int(signals.valid_samples.max()))
+        band = excited_band(padded, signals.rate)
+        return KnownForce(True, band, model.drive_shapes @ _independent(config, signals, band))
+    if config.excitation.kind == "turbulence":
+        diameter = outer_width(config.structure.section)
+        psd = partial(turbulence_psd, config.excitation, diameter)
+        return KnownForce(True, tuple(config.excitation.band_Hz), own_drive, psd)
+    band = (1.0 / config.spectra.segment_s, HIGHEST * signals.rate)
+    return KnownForce(False, band, _pushed_alike(config, model, own_drive, band[1]))
+
+
+def _independent(
+    config: ConfigPart, signals: CampaignSignals, band_Hz: tuple[float, float]
+) -> np.ndarray:
+    """Return (force channel, force) the measured forces as a mix of independent ones."""
+    total = np.zeros((len(signals.forces),) * 2)
+    for force in signals.force:
+        spectra = segment_spectra(force, signals.rate, config.spectra)
+        inside = (spectra.frequency >= band_Hz[0]) & (spectra.frequency <= band_Hz[1])
+        values = spectra.values[:, :, inside]
+        products = np.einsum("isf,jsf->ij", values, values.conj()).real
+        total += products / np.trace(products)
+    variance, parts = np.linalg.eigh(total)
+    kept = variance > SMALLEST_PART * variance[-1]
+    return parts[:, kept] * np.sqrt(variance[kept] / variance.sum())
+
+
+def _pushed_alike(
+    config: ConfigPart, model: ModalModel, own_drive: np.ndarray, highest_Hz: float
+) -> np.ndarray:
+    """Return (mode, force) one force for each mode that the model's excitation reaches."""
+    groups = config.identification.groups if config.identification is not None else "all"
+    _, modes = reached_supports(replace(model, drive_shapes=own_drive), groups)
+    modes = modes[model.frequencies[modes] <= PUSHED_BEYOND * highest_Hz]
+    return np.eye(model.modes)[:, modes]
+
+
+def relative_psd(
+    config: ConfigPart,
+    signals: CampaignSignals,
+    record: int,
+    force: KnownForce,
+    frequency: np.ndarray,
+) -> np.ndarray | None:
+    """Return (frequency,) the PSD of the forces of a record over its mean in their band.
+
+    It is 1 outside the band. None if the forces are not known, or white within chance.
+
+    frequency: (frequency,) Hz, the first lines of the spectra.
+    """
+    rate, spectra = signals.rate, config.spectra
+    relative = np.ones(frequency.size)
+    inside = (frequency >= force.band_Hz[0]) & (frequency <= force.band_Hz[1])
+    if signals.forces:
+        values = segment_spectra(signals.force[record], rate, spectra).values
+        psd = np.mean(values.real**2 + values.imag**2, axis=1).sum(axis=0)[: frequency.size]
+        averages = effective_averages(signals.force[record].shape[-1] / rate, rate, spectra)
+        chance = 2.0 / (averages * len(signals.forces))
+        if np.var(psd[inside]) < NOT_WHITE * chance * np.mean(psd[inside]) ** 2:
+            return None
+        psd = np.convolve(psd, SMOOTHED, mode="same")
+    else:
+        return None if force.stated_psd is None else force.stated_psd(frequency)
+    relative[inside] = psd[inside] / np.mean(psd[inside])
+    return relative

@@ -1,0 +1,93 @@
+"""The linear model as the sensors of a campaign see it: they are its sensors and its shape line."""
+
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+
+from vibroimpact.campaign.file import CampaignError
+from vibroimpact.campaign.signals import CampaignSignals
+from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.diagnosis.measurement.attached_model import attach
+from vibroimpact.diagnosis.measurement.sensed_motion import moving
+from vibroimpact.geometry.centreline import build_centreline
+from vibroimpact.identify.linear.support_groups import reached_supports
+from vibroimpact.identify.spectra.welch import driven_axis
+from vibroimpact.reduction.modal_model import ModalModel
+from vibroimpact.reduction.reduced_model import build_model
+
+from .forces import KnownForce, known_force
+
+LEAST_MOTION = 0.02  # of the sensor that the force moves most
+
+
+def with_own_drive(
+    config: ConfigPart, campaign: xr.Dataset, signals: CampaignSignals
+) -> tuple[ModalModel, np.ndarray]:
+    """Return (ModalModel attached to a campaign, its drives (mode, force) by its own excitation).
+
+    The latter are those of the campaign if it has forces.
+    """
+    model = attach(config, campaign)
+    if signals.forces:
+        return model, model.drive_shapes
+    # The same places give the same mesh, and with it the same modes.
+    places = {f"place_{number}": tuple(place) for number, place in enumerate(signals.points)}
+    own = config.model_copy(update={"points": {**config.points, **places}})
+    return model, build_model(own, motion_only=True).drive_shapes
+
+
+def measured_model(
+    config: ConfigPart, campaign: xr.Dataset, signals: CampaignSignals
+) -> tuple[ModalModel, KnownForce, np.ndarray]:
+    """Return (ModalModel, KnownForce, indices (sensor,) of the channels that are its sensors).
+
+    The sensors are those channels that measure a motion which the force causes, from one end of
+    the tube to the other. They are also the points of the shape line.
+
+    Raises CampaignError if there is none.
+    """
+    model, own_drive = with_own_drive(config, campaign, signals)
+    force = known_force(config, signals, model, own_drive)
+    model = replace(model, drive_shapes=force.drive_shapes)
+    centreline = build_centreline(config.structure)
+    _, modes = reached_supports(model, groups_of(config))
+    size = np.abs(model.sensor_shapes[modes]).max(axis=0) * moving(signals.kinds)
+    used = np.flatnonzero(size > LEAST_MOTION * size.max(initial=0.0))
+    if not used.size:
+        raise CampaignError("no channel measures a motion of the tube that the force causes")
+    places = np.array([centreline.locate(signals.points[each], "a channel") for each in used])
+    order = np.argsort(places, kind="stable")
+    used, places = used[order], places[order]
+    axis = driven_axis(direction_of(config, signals))
+    return (
+        replace(
+            model,
+            sensor_names=tuple(f"{point_of(signals.channels[each], axis)}.{axis}" for each in used),
+            sensor_shapes=model.sensor_shapes[:, used],
+            sensor_positions=model.sensor_positions[used],
+            sensor_directions=model.sensor_directions[used],
+            line_shapes=model.sensor_shapes[:, used],
+            line_positions=model.sensor_positions[used],
+            line_arc_length=places,
+        ),
+        force,
+        used,
+    )
+
+
+def point_of(channel: str, axis: str) -> str:
+    """Return the name of the point of a channel: its own, without the axis at its end."""
+    return channel.removesuffix(f".{axis}")
+
+
+def groups_of(config: ConfigPart) -> str | tuple[tuple[str, ...], ...]:
+    """Return identification.groups of a configuration, `all` if it has no identification."""
+    return "all" if config.identification is None else config.identification.groups
+
+
+def direction_of(config: ConfigPart, signals: CampaignSignals) -> tuple[float, ...]:
+    """Return the direction (3,) of the first force, or of the model's excitation."""
+    if signals.forces:
+        return tuple(map(float, signals.force_directions[0]))
+    return tuple(getattr(config.excitation, "direction", (0.0, 1.0, 0.0)))

@@ -1,0 +1,195 @@
+"""The spectrum of the response at any load: mean over segments and seeds, and their extremes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.identify.spectra.welch import psd_statistics, segment_spectra
+from vibroimpact.reports.figures.plot import Axis, Panel, Series
+from vibroimpact.reports.figures.style import BLUE
+from vibroimpact.study.cases import case_from_id
+
+from .page_plot import PagePlot, key_of
+
+STATISTICS = ("mean", "min", "max")
+SERIES = ("displacement",)
+MOST_DECADES = 10.0  # of the axis; below is round-off of a sine
+OUTSIDE = 1e-4  # share of the power that a band may leave out at each end
+Place = tuple[float, float]  # gap in m, load
+Band = tuple[float, float]
+BLOCKS = 700  # of the frequency axis
+COLUMN = "psd_m2_per_Hz"
+
+
+def spectra_of_sensor(
+    paths: Sequence[str | Path], read: Callable, sensor: str, places: Sequence[Place]
+) -> tuple[np.ndarray, dict[Place, dict[str, np.ndarray]]]:
+    """Return (frequency in Hz, {(gap in m, load): {statistic: PSD in m²/Hz}}) of one sensor.
+
+    paths: files of spectra named after their cases; read: function (path, names).
+    places: the (gap, load) that are wanted.
+
+    The mean is over segments and seeds, min and max over both.
+    """
+    names = [f"psd_displacement_{statistic}" for statistic in STATISTICS]
+    combine = {"mean": np.add, "min": np.minimum, "max": np.maximum}
+    found: dict[Place, dict[str, np.ndarray]] = {}
+    counts: dict[Place, int] = {}
+    frequency = np.zeros(0)
+    for path in paths:
+        case = case_from_id(Path(path).stem)
+        place = case.gap_m, case.load_rms_N
+        if place not in places:
+            continue
+        dataset = read(path, names)
+        at = [str(name) for name in dataset["sensor"].values].index(sensor)
+        frequency = dataset["frequency"].values
+        counts[place] = counts.get(place, 0) + 1
+        known = found.setdefault(place, {})
+        for statistic in STATISTICS:
+            values = dataset[f"psd_displacement_{statistic}"].values[at].astype(float)
+            known[statistic] = (
+                combine[statistic](known[statistic], values) if statistic in known else values
+            )
+    for place, known in found.items():
+        known["mean"] = known["mean"] / counts[place]
+    return frequency, found
+
+
+def spectra_of_series(
+    paths: Sequence[str | Path], read: Callable, settings: Any, places: Sequence[Place]
+) -> tuple[str, np.ndarray, dict[Place, dict[str, np.ndarray]]]:
+    """Return (sensor, frequency, spectra) as spectra_of_sensor does, from time series.
+
+    For a study that keeps its time series and identifies nothing. The sensor is the one that moves
+    most at the largest load; the spectra are those of the first seed. They are empty if no
+    segment fits in a record.
+
+    paths: files of time series named after their cases.
+    settings: section of the configuration with segment_s, overlap and window.
+    """
+    first: dict[Place, str | Path] = {}
+    for path in paths:
+        case = case_from_id(Path(path).stem)
+        if (case.gap_m, case.load_rms_N) in places:
+            first.setdefault((case.gap_m, case.load_rms_N), path)
+    if not first:
+        return "", np.zeros(0), {}
+    loudest = read(first[max(first, key=lambda place: place[1])], SERIES)
+    at = int(np.argmax(np.mean(np.square(loudest["displacement"].values), axis=-1)))
+    found, frequency = {}, np.zeros(0)
+    for place, path in first.items():
+        dataset = read(path, SERIES)
+        rate = float(dataset.attrs["sampling_frequency"])
+        signal = dataset["displacement"].values[at]
+        if signal.size < settings.segment_s * rate:
+            return "", np.zeros(0), {}
+        segments = segment_spectra(signal, rate, settings)
+        frequency = segments.frequency
+        found[place] = {
+            name: values[0].astype(float)
+            for name, values in zip(STATISTICS, psd_statistics(segments.values), strict=True)
+        }
+    return str(loudest["sensor"].values[at]), frequency, found
+
+
+def band_of(frequency: np.ndarray, spectra: dict[Place, dict[str, np.ndarray]]) -> Band:
+    """Return (low, high) in Hz of the band that holds nearly all of the motion at every load."""
+    low, high = frequency[-1], frequency[1]
+    for values in spectra.values():
+        power = np.cumsum(values["mean"][1:])
+        inside = frequency[1:][(power > OUTSIDE * power[-1]) & (power < (1 - OUTSIDE) * power[-1])]
+        if inside.size:
+            low, high = min(low, inside[0]), max(high, inside[-1])
+    return max(0.5 * low, frequency[1]), min(1.5 * high, frequency[-1])
+
+
+def blocks_of(frequency: np.ndarray, band_Hz: Band) -> np.ndarray:
+    """Return the first indices of blocks of lines inside a band, then the index after the last.
+
+    Blocks grow with frequency: a low one holds one line, so that no low peak is blunted.
+    """
+    first, last = np.searchsorted(frequency, band_Hz)
+    if last - first <= BLOCKS:
+        return np.arange(first, last + 1)
+    wanted = np.geomspace(max(frequency[first], 1e-6), frequency[last - 1], BLOCKS)
+    starts = np.unique(np.searchsorted(frequency, wanted))
+    return np.append(starts[(starts >= first) & (starts < last)], last)
+
+
+def spectrum_plot(
+    frequency: np.ndarray,
+    spectra: dict[Place, dict[str, np.ndarray]],
+    places: Sequence[tuple[str, Place]],
+    sensor: str,
+    band_Hz: Band,
+    over: str = "segments and seeds",
+) -> PagePlot:
+    """Return the plot of the spectrum of a sensor by gap and load.
+
+    frequency, spectra: of spectra_of_sensor.
+    places: (key of the frame, (gap, load)).
+    band_Hz: the band that is shown.
+    over: of which the mean is taken.
+    """
+    edges = blocks_of(frequency, band_Hz)
+    sizes = np.diff(edges)
+    inside = slice(edges[0], edges[-1])
+    starts = edges[:-1] - edges[0]
+    middle = np.add.reduceat(frequency[inside], starts) / sizes
+    curves = {}
+    for key, place in places:
+        if place in spectra:
+            values = spectra[place]
+            mean = np.add.reduceat(values["mean"][inside], starts) / sizes
+            low = np.minimum.reduceat(values["min"][inside], starts)
+            high = np.maximum.reduceat(values["max"][inside], starts)
+            curves[key] = Series(
+                "spectrum", middle, mean, {}, low, high, True, label="mean", colour=BLUE, width=1.4
+            )
+    axis = Axis("frequency_Hz", False, float(middle[0]), float(middle[-1]))
+    levels = _levels(curves)
+    return PagePlot(
+        "spectrum",
+        f"Spectrum of the displacement at {sensor}",
+        (
+            f"Power spectral density at the chosen gap and load: mean over {over}"
+            " (line), smallest and largest segment (band). Move the slider to see the peaks move"
+            " and widen as the contact sets in; the axis follows the level and keeps its decades."
+        ),
+        {key: Panel(axis, levels[key], [curve]) for key, curve in curves.items()},
+        ("gap", "load"),
+        empty="No spectrum of this load was read: the slider shows a selection of the loads.",
+        wide=True,
+        height=420,
+    )
+
+
+def frame_places(gaps: Sequence[float], loads: Sequence[float]) -> list[tuple[str, Place]]:
+    """Return (key of the frame, (gap, load)) of every position of the controls."""
+    return [
+        (key_of(row, column), (gap, load))
+        for row, gap in enumerate(gaps)
+        for column, load in enumerate(loads)
+    ]
+
+
+def _levels(curves: dict[str, Series]) -> dict[str, Axis]:
+    """Return {key: vertical axis}, each of the same number of decades below its largest value."""
+    ends = {}
+    for key, curve in curves.items():
+        mean = np.asarray(curve.y)
+        if np.any(mean > 0.0):
+            low, high = 0.1 * mean[mean > 0.0].min(), 2.0 * np.array(curve.high, dtype=float).max()
+            ends[key] = high / low, high
+    decades = min(max((ratio for ratio, _ in ends.values()), default=1.0), 10.0**MOST_DECADES)
+    return {
+        key: Axis(COLUMN, True, ends[key][1] / decades, ends[key][1])
+        if key in ends
+        else Axis(COLUMN)
+        for key in curves
+    }

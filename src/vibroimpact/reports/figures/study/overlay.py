@@ -1,0 +1,220 @@
+"""A campaign and the simulation: PSD of acceleration at the response point (figure 5)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.campaign.file import SYNTHETIC, channel_at, channel_signal
+from vibroimpact.geometry.sections import outer_width
+from vibroimpact.identify.linear.responses import response_psd
+from vibroimpact.identify.spectra.welch import psd_statistics, segment_spectra
+from vibroimpact.reports.figures.plot import Axis, Item, Mark, Panel, Plot, Series
+from vibroimpact.reports.figures.style import BLACK, BLUE, GREEN, RED, gap_label, label_of, shown
+
+from .linear_limits import contact_stiffness, linear_modes, shown_band
+from .psd_table import driven_sensor
+
+LEVELS = 4
+STATISTICS = ("mean", "min", "max")
+ENVELOPE_HZ = 0.5  # width of the blocks whose extremes are drawn; those of bins would hide the rest
+
+
+def figure_05_overlay(config, model, responses, campaign):
+    """Return the Plot of a campaign over the simulation, a panel per load.
+
+    responses: Responses of one gap; campaign: Dataset of campaign.read_campaign.
+    """
+    sensor = driven_sensor(config, config.identification.response_point)
+    records = _shown_records(campaign, responses.gap_m)
+    gap = float(campaign["gap"].values[records[0]])
+    diameter = outer_width(config.structure.section)
+    source = str(campaign.attrs.get("source", "")) or "no source given"
+    title = "Synthetic campaign" if source.startswith(SYNTHETIC) else "Campaign"
+    caption = (
+        f"PSD of acceleration at {sensor} for {len(records)} loads: campaign (green; gap"
+        f" {gap_label(gap, diameter)}; {source}) over the simulation of the study (blue; gap"
+        f" {gap_label(responses.gap_m, diameter)}, nearest load, all seeds). Thick: mean over"
+        " segments; thin, dotted: smallest and largest segment (extremes of blocks of"
+        f" {ENVELOPE_HZ:g} Hz). Vertical: modes of the driven plane of the tube, free (black,"
+        " dashed) and in full contact (red, dashed)."
+    )
+    position, direction = (
+        array[model.sensor_names.index(sensor)]
+        for array in (model.sensor_positions, model.sensor_directions)
+    )
+    channel = channel_at(campaign, position, direction, "acceleration")
+    panels = {
+        f"record {record}": _campaign_panel(
+            config, model, responses, (campaign, record, channel), sensor
+        )
+        for record in records
+    }
+    return [_in_pairs(f"{title} over simulation", caption, panels)]
+
+
+def _in_pairs(title, caption, panels):
+    """Return the Plot of panels, two side by side."""
+    keys = list(panels)
+    rows = [keys[row : row + 2] for row in range(0, len(keys), 2)]
+    rows[-1] += ["."] * (len(rows[0]) - len(rows[-1]))
+    size = (9.0, 0.6 + 3.0 * len(rows))
+    return Plot("figure_05_overlay", title, caption, panels, rows, size, share="x", legend=3)
+
+
+def _campaign_panel(config, model, responses, measured, sensor):
+    """Return the Panel of one record, (campaign, record, channel), over the nearest load."""
+    campaign, record, channel = measured
+    frequency = responses.frequency
+    band = shown_band(model, frequency[-1])
+    load = float(campaign["load_rms"].values[record])
+    rate = float(campaign.attrs["sampling_frequency"])
+    signal = channel_signal(campaign, record, channel)
+    spectra = segment_spectra(signal, rate, config.spectra, frequency[-1])
+    statistics = [values[0] for values in psd_statistics(spectra.values)]
+    nearest, simulated = _nearest(responses, sensor, load)
+    items = [
+        *_spectrum(band, spectra.frequency, statistics, "campaign", {"load_rms_N": load}, GREEN),
+        *_spectrum(band, frequency, simulated, "simulation", {"load_rms_N": nearest}, BLUE),
+        *_modes(model, band),
+    ]
+    same = np.isclose(load, nearest, rtol=0.01)
+    title = f"load {load:.3g} N RMS" + ("" if same else f"; simulation {nearest:.3g} N RMS")
+    return Panel(*_axes(band, frequency, simulated), items, title)
+
+
+def _axes(band, frequency, statistics):
+    """Return the axes that show the band of (mean, smallest, largest) PSDs."""
+    inside = (frequency >= band[0]) & (frequency <= band[1])
+    lowest, highest = np.percentile(statistics[0][inside], 1.0), statistics[2][inside].max()
+    level = Axis("psd_m2_per_s4_per_Hz", True, 0.01 * lowest, 3.0 * highest)
+    return Axis("frequency_Hz", False, *band), level
+
+
+def _nearest(responses, sensor, load):
+    """Return (nearest load, its mean, smallest and largest PSD of acceleration)."""
+    nearest = int(np.argmin(np.abs(np.log(responses.load / load))))
+    psds = [responses.psd["acceleration", sensor, name][nearest] for name in STATISTICS]
+    return responses.load[nearest], psds
+
+
+def _shown_records(campaign, gap_m):
+    """Return up to LEVELS record indices of ascending load, one per load.
+
+    They are at the gap of the campaign nearest to gap_m.
+    """
+    gaps, loads = campaign["gap"].values, campaign["load_rms"].values
+    distance = np.where(np.isfinite(gaps), np.abs(gaps - gap_m), 0.0)
+    same_gap = np.flatnonzero(np.isclose(distance, distance.min()))
+    by_load = {round(float(np.log(loads[index])), 2): int(index) for index in same_gap[::-1]}
+    records = [by_load[key] for key in sorted(by_load)]
+    chosen = np.unique(
+        np.round(np.linspace(0, len(records) - 1, min(LEVELS, len(records)))).astype(int)
+    )
+    return [records[index] for index in chosen]
+
+
+def _spectrum(band, frequency, statistics, curve, tags, colour) -> list[Item]:
+    """Return mean, smallest and largest PSD (frequency,) in (m/s²)²/Hz inside a band."""
+    kept = (frequency >= band[0]) & (frequency <= band[1])
+    frequency, (mean, low, high) = frequency[kept], (psd[kept] for psd in statistics)
+    look: dict[str, Any] = {"colour": colour, "width": 0.8}
+    items: list[Item] = [
+        Series(f"{curve}, mean", frequency, mean, tags, label=curve, order=3, **look)
+    ]
+    steps = max(1, round(ENVELOPE_HZ / (frequency[1] - frequency[0])))
+    starts = np.arange(0, frequency.size, steps)
+    middle = np.add.reduceat(frequency, starts) / np.diff([*starts, frequency.size])
+    look |= {"line": ":", "alpha": 0.8}
+    for name, psd, combine in (("smallest", low, np.minimum), ("largest", high, np.maximum)):
+        label = f"{curve}, extreme segments" if name == "smallest" else ""
+        extremes, name = combine.reduceat(psd, starts), f"{curve}, {name} segment"
+        items.append(Series(name, middle, extremes, tags, label=label, **look))
+    return items
+
+
+def _modes(model, band) -> list[Item]:
+    """Return the Marks of the modes of the driven plane, free and in full contact."""
+    items: list[Item] = []
+    stiff = contact_stiffness(model)
+    for name, k, colour in (("free modes", 0.0, BLACK), ("modes in full contact", stiff, RED)):
+        look: dict[str, Any] = {"colour": colour, "line": "--", "width": 0.9, "order": 0}
+        values = [value for value in linear_modes(model, k, 12) if band[0] < value < band[1]]
+        for index, value in enumerate(values):
+            items.append(Mark(name, "x", value, label="" if index else name, **look))
+    return items
+
+
+def figure_05_measured(config, model, measured, supports, simulated=None, level="load_rms_N"):
+    """Return the Plot of measured spectra over those of the equivalent linear tube, and of a
+    study's simulation if there is one, a panel per load.
+
+    measured, simulated: Responses, the latter of a study of the same tube.
+    supports: {load: (k in N/m, c in N s/m, relative PSD (low_frequency,) of the force or None)} of
+        the loads at which they are known.
+    level: column of the loads; response_rms_m if they are the RMS of the response.
+    """
+    sensor = driven_sensor(config, config.identification.response_point)
+    chosen = np.unique(
+        np.round(np.linspace(0, measured.load.size - 1, min(LEVELS, measured.load.size)))
+    ).astype(int)
+    band = shown_band(model, measured.frequency[-1])
+    fitted = config.identification.broadband.band_Hz
+    panels = {}
+    for index in chosen:
+        load = float(measured.load[index])
+        psds = [measured.psd["acceleration", sensor, name][index] for name in STATISTICS]
+        items = _spectrum(band, measured.frequency, psds, "measured", {level: load}, GREEN)
+        items += _simulated(model, simulated, load) if simulated is not None else []
+        if load in supports:
+            mean = measured.frequency, psds[0]
+            items.append(_equivalent_line(model, sensor, mean, fitted, supports[load]))
+        title = f"{label_of(level).partition(' (')[0].lower()} {_in_unit(level, load)}"
+        axes = _axes(band, measured.frequency, psds)
+        panels[f"level {index}"] = Panel(*axes, [*items, *_modes(model, band)], title)
+    caption = _measured_caption(config, sensor, measured.gap_m, simulated is not None)
+    return [_in_pairs("Measured spectra over the equivalent linear tube", caption, panels)]
+
+
+def _measured_caption(config, sensor, gap_m, simulated):
+    """Return the caption of measured spectra; simulated: whether a study is drawn too."""
+    beside = " Blue: simulation of the study at the nearest load." if simulated else ""
+    return (
+        f"PSD of acceleration at {sensor.rpartition('.')[0]}, gap"
+        f" {gap_label(gap_m, outer_width(config.structure.section))}: measured (green;"
+        " thick: mean over segments and records, dotted: smallest and largest segment). Black: the"
+        " linear tube on its equivalent support in the band of the broadband comparison, its level"
+        f" fitted.{beside} Vertical: modes of the"
+        " driven plane of the tube, free (black, dashed) and held at the supports (red, dashed)."
+    )
+
+
+def _in_unit(level, value):
+    """Return a level with the unit of its axis."""
+    return f"{shown(level, value):.3g} {label_of(level).partition(' (')[2].rstrip(')')}"
+
+
+def _simulated(model, simulated, load):
+    """Return the spectra of the Responses of a study at the nearest load."""
+    (name,) = {sensor for _, sensor, _ in simulated.psd}
+    nearest, psds = _nearest(simulated, name, load)
+    band = shown_band(model, simulated.frequency[-1])
+    return _spectrum(band, simulated.frequency, psds, "simulation", {"load_rms_N": nearest}, BLUE)
+
+
+def _equivalent_line(model, sensor, measured, band, support):
+    """Return the PSD of the linear tube on a support (k, c, PSD of the force), its level fitted.
+
+    measured: (frequency in Hz, mean PSD). band: of the fit, in Hz.
+    """
+    (frequency, mean), (k, c, force) = measured, support
+    inside = (frequency >= band[0]) & (frequency <= band[1])
+    frequency, mean = frequency[inside], mean[inside]
+    shape = model.sensor_shapes[:, [model.sensor_names.index(sensor)]]
+    psd = response_psd(model, k, c, frequency, shape, "acceleration")[0]
+    if force is not None:
+        psd = psd * np.interp(frequency, force["low_frequency"].values, force.values)
+    name = "linear tube on the equivalent support"
+    level = psd * np.exp(np.mean(np.log(mean / psd)))
+    return Series(name, frequency, level, {"k_N_per_m": k}, label=name, width=1.0, order=4)

@@ -1,0 +1,144 @@
+"""The spectra that figures need, gathered file by file with one file in memory at a time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.excitation.force_files import read_force
+from vibroimpact.excitation.line_force_spectrum import line_force_psd
+from vibroimpact.geometry.sections import outer_width
+from vibroimpact.identify.spectra.welch import driven_axis, psd_statistics, segment_spectra
+
+from .cases_of_gap import paths_of_gap, shown_gap
+from .linear_limits import shown_band
+
+BAND_POINTS = 4000  # of the integral over the band of a force
+QUANTITIES = ("displacement", "acceleration")
+STATISTICS = {
+    "mean": np.add,
+    "min": np.minimum,
+    "max": np.maximum,
+}  # and how those of several seeds are put together
+
+
+@dataclass(frozen=True)
+class Responses:
+    """PSDs of one gap by load, and the in-plane share of all cases.
+
+    load (load,): N RMS, ascending. frequency (frequency,): Hz.
+    psd: {(quantity, sensor, statistic): (load, frequency)}; statistic is mean (over segments and
+    seeds), min or max (over both).
+    share: rows {gap_m, load_rms_N, seed, point, in_plane_share_dB}.
+    """
+
+    gap_m: float
+    load: np.ndarray
+    frequency: np.ndarray
+    psd: dict
+    share: list
+
+
+def spectra_shown(config, paths, read):
+    """Yield the spectra of files named after cases, with the variables that gather needs.
+
+    read: function (path, names). Of gaps that are not shown, few variables are read.
+    """
+    names = [f"psd_{quantity}_{statistic}" for quantity in QUANTITIES for statistic in STATISTICS]
+    shown = set(paths_of_gap(paths, shown_gap(config)))
+    for path in paths:
+        yield read(path, names if path in shown else ["psd_displacement_mean"])
+
+
+def gather(config, model, spectra):
+    """Return the Responses of an iterable of spectra datasets.
+
+    PSDs are those of the largest gap in the shown band, in the driven direction. Raises ValueError
+    when no dataset has that gap.
+    """
+    gap_m = shown_gap(config)
+    driven = driven_axis(config.excitation.direction)
+    highest_Hz = shown_band(model)[1]
+    sums, counts, share, frequency = {}, {}, [], None
+    for dataset in spectra:
+        share += _in_plane_share(dataset, driven)
+        if not np.isclose(dataset.attrs["gap_m"], gap_m, rtol=1e-9):
+            continue
+        load = float(dataset.attrs["load_rms_N"])
+        frequency = dataset["frequency"].values
+        kept = frequency <= highest_Hz
+        frequency = frequency[kept]
+        counts[load] = counts.get(load, 0) + 1
+        for quantity in QUANTITIES:
+            for statistic, combine in STATISTICS.items():
+                psds = dataset[f"psd_{quantity}_{statistic}"].values
+                for index, sensor in enumerate(map(str, dataset["sensor"].values)):
+                    if not sensor.endswith("." + driven):
+                        continue
+                    values = psds[index, kept].astype(float)
+                    known = sums.setdefault((quantity, sensor, statistic), {})
+                    known[load] = combine(known[load], values) if load in known else values
+    if not counts:
+        raise ValueError(
+            f"no spectra of the gap {gap_m} m: the figures need the cases of the configuration's"
+            " largest gap"
+        )
+    loads = sorted(counts)
+    psd = {
+        key: np.array([by_load[load] / (counts[load] if key[2] == "mean" else 1) for load in loads])
+        for key, by_load in sums.items()
+    }
+    return Responses(gap_m, np.array(loads), frequency, psd, share)
+
+
+def _in_plane_share(dataset, driven):
+    """Return one row per point: mean square of the other directions over the driven one, in dB."""
+    names = [str(name) for name in dataset["sensor"].values]
+    power = dict(
+        zip(names, dataset["psd_displacement_mean"].values.sum(axis=-1, dtype=float), strict=True)
+    )
+    rows = []
+    for point in dict.fromkeys(name.rpartition(".")[0] for name in power):
+        across = power.get(f"{point}.{driven}", 0.0)
+        along = sum(
+            value
+            for name, value in power.items()
+            if name.rpartition(".")[0] == point and not name.endswith("." + driven)
+        )
+        if across > 0.0 and along > 0.0:
+            rows.append(
+                {
+                    "gap_m": float(dataset.attrs["gap_m"]),
+                    "load_rms_N": float(dataset.attrs["load_rms_N"]),
+                    "seed": int(dataset.attrs["seed"]),
+                    "point": point,
+                    "in_plane_share_dB": 10.0 * np.log10(along / across),
+                }
+            )
+    return rows
+
+
+def unit_force_psd(config, frequency):
+    """Return the one-sided PSD (frequency,) in N²/Hz of the drive at 1 N RMS.
+
+    It is flat in its band, that of turbulence, or that of the measured record.
+    """
+    excitation = config.excitation
+    if excitation.kind == "band_limited":
+        low, high = excitation.band_Hz
+        return np.where((frequency >= low) & (frequency <= high), 1.0 / (high - low), 0.0)
+    if excitation.kind == "turbulence":
+        diameter = outer_width(config.structure.section)
+        psd = line_force_psd(excitation, diameter, frequency)
+        fine = np.linspace(*excitation.band_Hz, BAND_POINTS)
+        return psd / np.trapezoid(line_force_psd(excitation, diameter, fine), fine)
+    force = read_force(excitation.file, excitation.variable, excitation.sampling_frequency_Hz)
+    measured = segment_spectra(force.values, force.rate, config.spectra)
+    mean = psd_statistics(measured.values)[0][0] / np.mean(np.square(force.values))
+    return np.interp(frequency, measured.frequency, mean, left=0.0, right=0.0)
+
+
+def driven_sensor(config, point):
+    """Return the name of the sensor at a point in the driven direction, e.g. apex.y."""
+    return f"{point}.{driven_axis(config.excitation.direction)}"

@@ -1,0 +1,268 @@
+"""Responses against load: maps (figures 6 and 8), PSDs (figure 7), and the in-plane share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.geometry.sections import outer_width
+from vibroimpact.identify.linear.responses import psd_family
+from vibroimpact.reports.figures.plot import (
+    Axis,
+    ColourBar,
+    Map,
+    Panel,
+    Plot,
+    Series,
+    Signs,
+    extent,
+)
+from vibroimpact.reports.figures.style import BLACK, ORANGE, gap_label, number, ordered_colours
+
+from .equivalent import look_of_gap
+from .linear_limits import contact_stiffness, linear_modes, shown_band
+from .psd_table import driven_sensor, unit_force_psd
+from .seed_scatter import over_seeds
+
+FREE_K = 1.0  # N/m, the paper's lower bound
+DYNAMIC_RANGE_DB = 75.0  # of the colour maps
+LOWEST_SHARE_DB = -100.0  # below it is the effect of the seeded imperfection alone
+LINEAR_STIFFNESS_STEPS = 90
+
+
+def figure_06_levels(config, model, responses, level="load_rms_N"):
+    """Return the Plot of PSD / load² over frequency and load, at two points.
+
+    They are the response point and the broadband point.
+
+    level: column of the loads; response_rms_m if they are the RMS of the response.
+    """
+    word, column = {
+        "load_rms_N": ("load", "psd_dB"),
+        "response_rms_m": ("response", "psd_per_response2_dB"),
+    }[level]
+    points = list(
+        dict.fromkeys((config.identification.response_point, config.identification.broadband.point))
+    )
+    caption = (
+        f"PSD of displacement divided by the square of the {word}, over frequency and {word},"
+        f" {_gap_words(config, responses)}, mean over segments and seeds. If the tube is linear,"
+        f" a column has one colour; peaks that move to the right with the {word} show the"
+        " stiffening by contact. Triangles: modes of the driven plane of the free tube (bottom) and"
+        " in full bilateral contact (top)."
+    )
+    band = shown_band(model, responses.frequency[-1])
+    kept = _inside(responses.frequency, band)
+    frequency, loads = responses.frequency[kept], responses.load
+    levels = {
+        point: _decibels(
+            responses.psd["displacement", driven_sensor(config, point), "mean"][:, kept]
+            / loads[:, None] ** 2
+        )
+        for point in points
+    }
+    top = max(values.max() for values in levels.values())
+    ends = top - DYNAMIC_RANGE_DB, top
+    curve = f"mean PSD / {word}²"
+    panels = {
+        point: Panel(
+            Axis("frequency_Hz"),
+            Axis(level, True),
+            [Map(curve, frequency, loads, values, column, *ends), *_modes(model, band)],
+            driven_sensor(config, point),
+        )
+        for point, values in levels.items()
+    }
+    title = f"Peaks of the response against {'load' if word == 'load' else 'its level'}"
+    bar = ColourBar(column, *ends, ends="min")
+    return [
+        Plot(
+            "figure_06_levels",
+            title,
+            caption,
+            panels,
+            size=(7.6, 4.4),
+            share="y",
+            legend=2,
+            colour_bars=[bar],
+        )
+    ]
+
+
+def figure_07_overlay_of_loads(config, model, responses):
+    """Return the Plot of PSD / load² at the broadband point for all loads.
+
+    The linear responses at both ends are drawn with them.
+    """
+    sensor = driven_sensor(config, config.identification.broadband.point)
+    stiff = contact_stiffness(model)
+    caption = (
+        f"PSD of displacement at {sensor} divided by the square of the load, all loads,"
+        f" {_gap_words(config, responses)}, mean over segments and seeds (colour: load). Black:"
+        f" linear tube with bilateral supports of k = {FREE_K:g} N/m (dashed) and k = {stiff:.3g}"
+        " N/m (solid) under the same force. Low loads follow the first, high loads approach the"
+        " second, with wider peaks and without its anti-resonances."
+    )
+    band = shown_band(model, responses.frequency[-1])
+    kept = _inside(responses.frequency, band)
+    frequency, loads = responses.frequency[kept], responses.load
+    levels = responses.psd["displacement", sensor, "mean"][:, kept] / loads[:, None] ** 2
+    colours, items = ordered_colours(loads), []
+    for load, psd in zip(loads, levels, strict=True):
+        look = {"colour": colours[load], "width": 0.9, "alpha": 0.9}
+        items.append(Series("non-linear", frequency, psd, {"load_rms_N": load}, **look))
+    shape = model.sensor_shapes[:, model.sensor_names.index(sensor)]
+    force = unit_force_psd(config, frequency)
+    force[force == 0.0] = np.nan  # without force there is no linear line to draw
+    for k, line in ((FREE_K, "--"), (stiff, "-")):
+        psd = psd_family(model, [k], [0.0], frequency, shape)[0, 0] * force
+        look: dict[str, Any] = {"line": line, "width": 1.3, "order": 5, "colour": BLACK}
+        look["label"] = f"linear, k = {number(k)} N/m"
+        items.append(Series("linear", frequency, psd, {"k_N_per_m": k}, **look))
+    lowest = max(0.1 * levels.min(), 1e-13 * levels.max())
+    panel = Panel(
+        Axis("frequency_Hz", False, *band),
+        Axis("psd_per_load2_m2_per_N2_per_Hz", True, lowest, 4.0 * levels.max()),
+        items,
+        f"{sensor}, PSD of displacement / load²",
+        legend="upper right",
+    )
+    title = "Spectra of all loads between the linear limits"
+    ends = (loads[0], loads[-1]) if len(loads) > 1 else extent(loads, log=True)
+    bar = ColourBar("load_rms_N", *ends, log=True, curves=True)
+    return [
+        Plot(
+            "figure_07_overlay_of_loads",
+            title,
+            caption,
+            {"main": panel},
+            size=(7.6, 4.6),
+            colour_bars=[bar],
+        )
+    ]
+
+
+def figure_08_load_and_stiffness(config, model, responses):
+    """Return the Plot of the non-linear PSD against load and the linear PSD against stiffness."""
+    sensor = driven_sensor(config, config.identification.broadband.point)
+    caption = (
+        f"PSD of displacement at {sensor} divided by the square of the load. Left: simulated with"
+        f" contact, against the load, {_gap_words(config, responses)}, mean over segments and"
+        " seeds. Right: linear tube with a bilateral support, against its stiffness (no damping"
+        " added). The peaks take the same way; with contact they are wider and the anti-resonances"
+        " (dark) fade. Same colours on both sides. Triangles: modes of the driven plane of the"
+        " free tube (bottom) and in full contact (top)."
+    )
+    band = shown_band(model, responses.frequency[-1])
+    kept = _inside(responses.frequency, band)
+    frequency, loads = responses.frequency[kept], responses.load
+    psd = responses.psd["displacement", sensor, "mean"][:, kept]
+    measured = _decibels(psd / loads[:, None] ** 2)
+    stiffness = np.geomspace(
+        0.1 * config.identification.stiffness_range_N_per_m[0],
+        2.5 * contact_stiffness(model),
+        LINEAR_STIFFNESS_STEPS,
+    )
+    shape = model.sensor_shapes[:, model.sensor_names.index(sensor)]
+    coarse = frequency[::2]
+    family = psd_family(model, stiffness, [0.0], coarse, shape)[:, 0]
+    linear = _decibels(family * unit_force_psd(config, coarse))
+    ends, curve = (measured.max() - DYNAMIC_RANGE_DB, measured.max()), "PSD / load²"
+    modes = _modes(model, band)
+    panels = {
+        "load": Panel(
+            Axis("frequency_Hz"),
+            Axis("load_rms_N", True),
+            [Map(curve, frequency, loads, measured, "psd_dB", *ends), *modes],
+            "non-linear, against the load",
+        ),
+        "stiffness": Panel(
+            Axis("frequency_Hz"),
+            Axis("support_stiffness_N_per_m", True),
+            [Map(curve, coarse, stiffness, linear, "psd_dB", *ends), *modes],
+            "linear, against the bilateral stiffness",
+        ),
+    }
+    title, bar = (
+        "Load with contact, stiffness without",
+        ColourBar("psd_dB", *ends, ends="both"),
+    )
+    return [
+        Plot(
+            "figure_08_load_and_stiffness",
+            title,
+            caption,
+            panels,
+            size=(7.6, 4.4),
+            legend=2,
+            colour_bars=[bar],
+        )
+    ]
+
+
+def in_plane_share(config, responses):
+    """Return the Plot of the in-plane share of the motion against load, for every gap."""
+    point = config.identification.response_point
+    caption = (
+        "Mean square of the displacement in the other sensor directions over that in the driven"
+        f" one, at {point}, against load over gap: median and range"
+        " over seeds. The drive acts out of the plane only; below contact the share is that of the"
+        " seeded imperfection alone (nothing), from a level on the motion leaves its plane by"
+        " itself because contact turns it."
+    )
+    rows = [row for row in responses.share if row["point"] == point]
+    items, diameter = [], outer_width(config.structure.section)
+    for index, gap in enumerate(sorted({row["gap_m"] for row in rows}, reverse=True)):
+        chosen = [
+            {**row, "load_over_gap_N_per_m": row["load_rms_N"] / gap}
+            for row in rows
+            if row["gap_m"] == gap
+        ]
+        look = look_of_gap(index) | {"label": f"gap {gap_label(gap, diameter)}"}
+        items += over_seeds(
+            chosen,
+            "load_over_gap_N_per_m",
+            "in_plane_share_dB",
+            "in-plane share",
+            tags=("gap_m", "load_rms_N"),
+            **look,
+        )
+    lowest = extent([value for item in items for value in item.low])[0]
+    panel = Panel(
+        Axis("load_over_gap_N_per_m", True),
+        Axis("in_plane_share_dB", low=max(lowest, LOWEST_SHARE_DB)),
+        items,
+        f"in-plane share of the displacement at {point}",
+        "sensors in one direction only",
+        legend="lower right",
+    )
+    return [Plot("in_plane_share", "Motion across the driven direction", caption, {"main": panel})]
+
+
+def _gap_words(config, responses):
+    return f"gap {gap_label(responses.gap_m, outer_width(config.structure.section))}"
+
+
+def _inside(frequency, band):
+    """Return (frequency,) bool of the bins in a band, the zero bin left out."""
+    return (frequency >= band[0]) & (frequency <= band[1]) & (frequency > 0.0)
+
+
+def _decibels(values):
+    """Return 10 log10 of positive values; 0 (no force there) becomes a level far below the rest."""
+    return 10.0 * np.log10(np.maximum(values, np.finfo(float).tiny))
+
+
+def _modes(model, band):
+    """Return the modes of the driven plane: free below a map, in full contact above it."""
+    stiff, found = contact_stiffness(model), []
+    for name, k, height, marker, colour in (
+        ("free modes", 0.0, 0.012, "^", "white"),
+        ("modes in full contact", stiff, 0.988, "v", ORANGE),
+    ):
+        values = linear_modes(model, k, 12)
+        values = values[(values > band[0]) & (values < band[1])]
+        look = {"label": name, "marker": marker, "colour": colour, "size": 7, "order": 6}
+        found.append(Signs(name, values, height, **look))
+    return found

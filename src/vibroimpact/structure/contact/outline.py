@@ -1,0 +1,96 @@
+"""The free space of the tube's centre in the hole of a support, and the outline of the hole.
+
+The two axes are the support's transverse directions. A profile is circular, planes or lobes; those
+with other names are resolved by `profiles.plain_profile`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.config.stage_settings import ConfigPart
+
+POINTS = 361  # of a curved outline: one per degree, ends included
+OPEN = 3.0  # reach where stops leave a side open, as a multiple of the farthest stop
+
+
+def radial_gap(profile: ConfigPart, gap_m: float, angle: np.ndarray) -> np.ndarray:
+    """Return (angle,) m: how far the tube moves from the obstacle's centre until it touches.
+
+    profile: of a support.
+    gap_m: its gap, m; between flat stops it may be 0 or negative.
+    angle (angle,): direction of motion in rad from the first transverse direction to the second.
+
+    It is inf if no stop lies ahead. Source: the laws of config.supports, Circular, Planes and
+    Lobes.
+    """
+    turn = np.asarray(angle, dtype=float)
+    if profile.kind == "planes":
+        normals = np.deg2rad(np.asarray(profile.normals_deg, dtype=float))
+        ahead = np.cos(turn[..., None] - normals)
+        facing = ahead > 1e-12
+        reach = np.divide(gap_m, ahead, out=np.full(ahead.shape, np.inf), where=facing)
+        return reach.min(axis=-1)
+    if profile.kind == "lobes":
+        wave = 1.0 - np.cos(profile.count * (turn - np.deg2rad(profile.angle_deg)))
+        return gap_m + 0.5 * profile.depth_m * wave
+    return np.full(turn.shape, float(gap_m))
+
+
+def hole_outline(
+    profile: ConfigPart,
+    gap_m: float,
+    radius_m: float,
+    scale: float = 1.0,
+    reach_m: float | None = None,
+) -> np.ndarray:
+    """Return (point, 2) m: the closed outline of the hole that a tube of a radius passes through.
+
+    profile, gap_m: as in radial_gap.
+    scale: factor of gap and lobes, to make them visible next to the tube.
+    reach_m: if stops leave a side open, the outline ends on a square of this half side; 3 times
+        the farthest stop by default.
+
+    It is the free space of the tube's centre, scaled, moved outward by the radius: a flat stop by
+    its normal, a curved hole along the direction from its centre. It runs counter-clockwise and
+    ends at its start; it has no points if stops leave no space.
+    """
+    wall = radius_m + scale * gap_m
+    if profile.kind == "planes":
+        return _between_stops(profile.normals_deg, wall, reach_m or OPEN * wall)
+    angle = np.linspace(0.0, 2.0 * np.pi, POINTS)
+    return _polar(radius_m + scale * radial_gap(profile, gap_m, angle), angle)
+
+
+def facing_angle(profile: ConfigPart) -> float:
+    """Return the direction in rad of the first stop or land; 0 for a circular hole."""
+    if profile.kind == "planes":
+        return float(np.deg2rad(profile.normals_deg[0]))
+    return float(np.deg2rad(profile.angle_deg)) if profile.kind == "lobes" else 0.0
+
+
+def _polar(radius: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """Return (point, 2) of the polar coordinates of a full turn, closed to the last bit."""
+    outline = np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
+    outline[-1] = outline[0]
+    return outline
+
+
+def _between_stops(normals_deg: ConfigPart, distance: float, reach: float) -> np.ndarray:
+    """Return (point, 2): the part of a square of half side `reach` behind every stop.
+
+    A square clipped by one half plane after the other (Sutherland and Hodgman, 1974).
+    """
+    outline = reach * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    for normal in np.deg2rad(np.asarray(normals_deg, dtype=float)):
+        beyond = outline @ [np.cos(normal), np.sin(normal)] - distance
+        kept = []
+        for here, there, depth, next_depth in zip(
+            outline, np.roll(outline, -1, axis=0), beyond, np.roll(beyond, -1), strict=True
+        ):
+            if depth <= 0.0:
+                kept.append(here)
+            if (depth <= 0.0) != (next_depth <= 0.0):
+                kept.append(here + (there - here) * depth / (depth - next_depth))
+        outline = np.array(kept).reshape(-1, 2)
+    return np.concatenate([outline, outline[:1]])

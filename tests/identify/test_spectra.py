@@ -1,0 +1,265 @@
+"""Averaged spectra: against scipy's, against closed forms, and what the analysis window does to
+them.
+"""
+
+from itertools import pairwise
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import scipy.signal
+import xarray as xr
+
+from vibroimpact.identify.spectra.welch import (
+    complex_values,
+    cross_spectra,
+    effective_averages,
+    psd_statistics,
+    segment_layout,
+    segment_spectra,
+)
+from vibroimpact.identify.spectra.window_leakage import (
+    correlated_sum,
+    spectral_kernel,
+    window_autocorrelation,
+)
+from vibroimpact.study.case_spectra import CaseSpectra, case_spectra
+
+RATE = 256.0
+
+
+def settings(segment_s=10.0, overlap=0.65, window="hann"):
+    return SimpleNamespace(segment_s=segment_s, overlap=overlap, window=window)
+
+
+@pytest.mark.parametrize("window", ["hann", "boxcar"])
+@pytest.mark.parametrize("overlap", [0.0, 0.5, 0.65])
+def test_psd_is_that_of_scipy(window, overlap):
+    signal = np.random.default_rng(1).standard_normal((2, 49 * 256))
+    spectra = segment_spectra(signal, RATE, settings(overlap=overlap, window=window))
+    mean, low, high = psd_statistics(spectra.values)
+    frequency, expected = scipy.signal.welch(
+        signal, RATE, window, 2560, round(2560 * overlap), detrend=False
+    )
+    np.testing.assert_allclose(spectra.frequency, frequency)
+    np.testing.assert_allclose(mean, expected, rtol=1.0e-10)
+    assert np.all(low <= mean) and np.all(mean <= high) and np.any(low < 0.5 * mean)
+
+
+def test_white_noise_psd_is_twice_variance_over_rate():
+    signal = 3.0 * np.random.default_rng(2).standard_normal((1, 400 * 256))
+    mean = psd_statistics(segment_spectra(signal, RATE, settings()).values)[0][0]
+    assert mean[5:-5].mean() == pytest.approx(2.0 * 9.0 / RATE, rel=0.01)
+    assert mean.sum() * 0.1 == pytest.approx(signal.var(), rel=0.01)
+
+
+@pytest.mark.parametrize("window, equivalent_bins", [("hann", 1.5), ("boxcar", 1.0)])
+def test_a_sine_keeps_its_amplitude(window, equivalent_bins):
+    time = np.arange(49 * 256) / RATE
+    mean = psd_statistics(
+        segment_spectra(
+            0.7 * np.sin(2.0 * np.pi * 20.0 * time)[None], RATE, settings(window=window)
+        ).values
+    )[0][0]
+    assert mean.sum() * 0.1 == pytest.approx(0.5 * 0.7**2, rel=1.0e-6)
+    assert mean[200] == pytest.approx(0.5 * 0.7**2 / (0.1 * equivalent_bins), rel=1.0e-6)
+
+
+def test_float32_records_stay_float32():
+    signal = np.random.default_rng(3).standard_normal((1, 49 * 256))
+    single = segment_spectra(signal.astype(np.float32), RATE, settings(), highest_Hz=60.0)
+    assert single.values.dtype == np.complex64 and single.frequency[-1] == 60.0
+    np.testing.assert_allclose(
+        single.values,
+        segment_spectra(signal, RATE, settings(), highest_Hz=60.0).values,
+        atol=1.0e-5,
+    )
+
+
+def test_cross_spectra_hold_the_delay_between_two_channels():
+    signal = np.random.default_rng(4).standard_normal(100 * 256 + 8)
+    pair = np.stack(
+        [signal[8:], 2.0 * signal[:-8]]
+    )  # the second channel is the first, 8 samples later and twice as large
+    spectra = segment_spectra(pair, RATE, settings())
+    cross = cross_spectra(spectra.values, spectra.values[:1])
+    delay = -np.angle(cross[1, 0, 20:140]) / (2.0 * np.pi * spectra.frequency[20:140])
+    assert np.median(delay) == pytest.approx(8.0 / RATE, rel=0.02)
+    np.testing.assert_allclose(cross[0, 0].real, psd_statistics(spectra.values)[0][0])
+
+
+@pytest.mark.parametrize(
+    "segment_s, overlap, averages",
+    [(10.0, 0.65, 17.8), (10.0, 0.5, 15.3), (5.0, 0.5, 34.2), (2.0, 0.5, 91.0), (1.0, 0.5, 183.9)],
+)
+def test_effective_averages_of_a_49_s_record(segment_s, overlap, averages):
+    assert effective_averages(49.0, 2048.0, settings(segment_s, overlap)) == pytest.approx(
+        averages, abs=0.06
+    )
+
+
+def test_bin_scatter_is_that_of_the_effective_averages():
+    signal = np.random.default_rng(5).standard_normal((40, 49 * 64))
+    mean = psd_statistics(segment_spectra(signal, 64.0, settings()).values)[0][:, 10:-10]
+    averages = effective_averages(49.0, 64.0, settings())
+    assert 2.0 / (mean.var() / mean.mean() ** 2) == pytest.approx(averages, rel=0.05)
+
+
+def test_a_segment_longer_than_the_record_is_an_error():
+    with pytest.raises(ValueError, match="10 s does not fit in a record of 5 s"):
+        segment_layout(5 * 256, RATE, 10.0, 0.65)
+    with pytest.raises(ValueError, match="overlap = 1 leaves no step"):
+        segment_layout(20 * 256, RATE, 10.0, 1.0)
+
+
+def resonance_correlation(lag, frequency, ratio):
+    """Correlation of the displacement of an oscillator under white noise, to a factor."""
+    omega = 2.0 * np.pi * frequency
+    damped = omega * np.sqrt(1.0 - ratio**2)
+    return np.exp(-ratio * omega * lag) * (
+        np.cos(damped * lag) + ratio * omega / damped * np.sin(damped * lag)
+    )
+
+
+@pytest.mark.parametrize("window", ["hann", "boxcar"])
+def test_window_leakage_gives_the_expected_averaged_spectrum(window):
+    # Another way to the same expectation: transform of the correlation times the window's
+    # autocorrelation.
+    rate, segment_s, place, ratio = 512.0, 10.0, 16.0, 0.015
+    samples = round(rate * segment_s)
+    lags = np.arange(samples)
+    weighted = resonance_correlation(lags / rate, place, ratio) * window_autocorrelation(
+        window, samples, samples
+    )
+    bins = np.arange(120, 201) / segment_s
+    expected = 2.0 * np.cos(2.0 * np.pi * np.outer(bins, lags) / rate) @ weighted - weighted[0]
+    kernel = spectral_kernel(window, segment_s)
+    square = (kernel.fine_index(bins) * kernel.spacing_Hz / kernel.oversampling / place) ** 2
+    smooth = kernel.smooth(1.0 / ((1.0 - square) ** 2 + 4.0 * ratio**2 * square))
+    np.testing.assert_allclose(
+        smooth / smooth.max(), expected / expected.max(), atol=2.0e-4 if window == "hann" else 0.02
+    )
+
+
+def test_10_s_hann_window_widens_the_peak_by_8_percent():
+    kernel = spectral_kernel("hann", 10.0)
+    step = kernel.spacing_Hz / kernel.oversampling
+    frequency = np.arange(4000) * step
+    true = 1.0 / ((1.0 - (frequency / 16.0) ** 2) ** 2 + 4.0 * 0.015**2 * (frequency / 16.0) ** 2)
+    smooth = np.convolve(true, kernel.weights, mode="same")
+    # the crossings of half the peak, by linear interpolation
+    widths = []
+    for curve in (true, smooth):
+        above = np.flatnonzero(curve > 0.5 * curve.max())
+        low = np.interp(
+            0.5 * curve.max(),
+            curve[above[0] - 1 : above[0] + 1],
+            frequency[above[0] - 1 : above[0] + 1],
+        )
+        high = np.interp(
+            0.5 * curve.max(),
+            curve[above[-1] : above[-1] + 2][::-1],
+            frequency[above[-1] : above[-1] + 2][::-1],
+        )
+        widths.append(high - low)
+    assert 1.06 < widths[1] / widths[0] < 1.10
+
+
+def test_neighbouring_bins_of_a_hann_window_are_correlated():
+    kernel = spectral_kernel("hann", 10.0)
+    np.testing.assert_allclose(kernel.bin_correlation, [1.0, 4.0 / 9.0, 1.0 / 36.0], atol=1.0e-12)
+    signal = np.random.default_rng(6).standard_normal((40, 49 * 64))
+    mean = psd_statistics(segment_spectra(signal, 64.0, settings()).values)[0][:, 10:-10]
+    groups = mean[:, :280].reshape(40, 28, 10).sum(axis=2) / mean.mean()  # sums of 10 bins
+    expected = (
+        correlated_sum(np.ones((1, 10)), kernel)[0, 0]
+        * 2.0
+        / effective_averages(49.0, 64.0, settings())
+    )
+    assert groups.var() == pytest.approx(expected, rel=0.12)
+    assert spectral_kernel("none", 10.0).smooth(np.arange(5.0)) == pytest.approx(np.arange(5.0))
+
+
+def test_case_spectra_keep_what_figures_and_methods_read():
+    generator = np.random.default_rng(7)
+    config = SimpleNamespace(
+        record=SimpleNamespace(sampling_frequency_Hz=256.0),
+        spectra=settings(4.0, 0.5),
+        excitation=SimpleNamespace(direction=(0.0, 1.0, 0.0)),
+        identification=SimpleNamespace(
+            lscf=SimpleNamespace(band_Hz=(8.0, 30.0)),
+            broadband=SimpleNamespace(band_Hz=(6.0, 40.0)),
+        ),
+    )
+    motion = generator.standard_normal((4, 20 * 256)).astype(np.float32)
+    record = xr.Dataset(
+        {
+            "displacement": (("sensor", "time"), motion),
+            "acceleration": (("sensor", "time"), 2.0 * motion),
+            "line_displacement": (("line_point", "time"), motion[:3]),
+        },
+        {"sensor": ["a.x", "a.y", "b.x", "b.y"]},
+        {"case": "one"},
+    )
+    spectra = case_spectra(config, record)
+    assert (
+        list(spectra["driven_sensor"].values) == ["a.y", "b.y"]
+        and spectra.attrs["case"] == "one"
+        and spectra.attrs["window"] == "hann"
+    )
+    assert spectra["low_frequency"].values[-1] == 60.0 and spectra["line_frequency"].values[
+        [0, -1]
+    ].tolist() == [8.0, 30.0]
+    values = complex_values(spectra, "sensor_spectra")
+    low = spectra["low_frequency"].size
+    np.testing.assert_allclose(
+        (np.abs(values) ** 2).mean(axis=1),
+        spectra["psd_displacement_mean"].values[[1, 3], :low],
+        rtol=1.0e-4,
+    )
+    np.testing.assert_allclose(
+        spectra["psd_acceleration_max"], 4.0 * spectra["psd_displacement_max"], rtol=1.0e-4
+    )
+    assert float(spectra["effective_averages"]) == effective_averages(20.0, 256.0, config.spectra)
+
+
+def test_spectra_of_a_record_in_pieces_are_those_of_the_whole():
+    generator = np.random.default_rng(12)
+    config = SimpleNamespace(
+        record=SimpleNamespace(sampling_frequency_Hz=128.0),
+        spectra=settings(4.0, 0.65),
+        excitation=SimpleNamespace(direction=(0.0, 1.0, 0.0)),
+        identification=SimpleNamespace(
+            lscf=SimpleNamespace(band_Hz=(8.0, 20.0)),
+            broadband=SimpleNamespace(band_Hz=(6.0, 30.0)),
+        ),
+    )
+    series = [generator.standard_normal((count, 2500)).astype(np.float32) for count in (2, 2, 3)]
+    record = xr.Dataset(
+        {
+            name: ((dim, "time"), values)
+            for name, dim, values in zip(
+                ("displacement", "acceleration", "line_displacement"),
+                ("sensor", "sensor", "line_point"),
+                series,
+                strict=True,
+            )
+        },
+        {"sensor": ["a.x", "a.y"]},
+    )
+    whole, parts = case_spectra(config, record), {}
+    made = CaseSpectra(config, ["a.x", "a.y"], 3, 2500, np.float32)
+    made.write = lambda name, place, values: parts.setdefault(
+        name, np.empty(whole[name].shape, "f4")
+    ).__setitem__(place, values)
+    edges = [0, 1, 5, 700, 701, 2040, 2500]
+    for first, last in pairwise(edges):
+        made.put(*(values[:, first:last] for values in series))
+    made.finish()
+    assert set(parts) == set(whole.data_vars) - {"effective_averages"}
+    assert all(np.array_equal(parts[name], whole[name].values) for name in parts)
+    short = CaseSpectra(config, ["a.x", "a.y"], 3, 2500, np.float32)
+    short.write = made.write
+    short.put(*(values[:, :1000] for values in series))
+    with pytest.raises(ValueError, match="the record ended after"):
+        short.finish()
