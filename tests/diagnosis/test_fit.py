@@ -12,7 +12,7 @@ from vibroimpact.diagnosis.coordinates import (
     to_vector,
 )
 from vibroimpact.diagnosis.explanations import Point, Term
-from vibroimpact.diagnosis.gauss_newton import fit
+from vibroimpact.diagnosis.gauss_newton import fit, fits
 
 
 def test_coordinates_come_back(comparison):
@@ -87,3 +87,16 @@ def test_a_turned_force_is_turned_about_one_axis(comparison):
     np.testing.assert_allclose(
         structure.model(turned).drive_shapes, structure.model(whole).drive_shapes, atol=1e-12
     )
+
+
+def test_fits_side_by_side_are_those_of_one_at_a_time(comparison):
+    bench = comparison.screened()
+    begun = [
+        Point((Term("gap", "left", (0.7,)),)),
+        Point((Term("added_mass", "arc_900_0mm", (0.05,)),)),
+    ]
+    starts = [(point, effect_coordinates(point.terms, comparison.sizes)) for point in begun]
+    for start, together in zip(starts, fits(bench, starts, 2), strict=True):
+        alone = fit(bench, *start, 2)
+        assert together.objective == alone.objective
+        np.testing.assert_array_equal(together.x, alone.x)

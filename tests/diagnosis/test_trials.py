@@ -25,6 +25,13 @@ def test_every_effect_has_trials_that_can_be_run(comparison):
     assert failed == []
 
 
+@pytest.mark.parametrize("effect", ["hertz", "foliate_trefoil", "gap"])
+def test_an_effect_of_supports_is_tried_at_each(comparison, effect):
+    structure = comparison.structure
+    found = locations(EFFECTS[effect], structure.values, structure.names, True, 8)
+    assert found == ["all", "left", "right"]
+
+
 def test_values_that_make_no_model_have_no_lines(comparison):
     plate = Term("plate_flexibility", "left", (1.0e5, 0.4, 0.9))  # no fraction of critical damping
     lines = holding_lines(comparison.screened(), [Point((plate,)), Point((plate,))])

@@ -27,7 +27,6 @@ PLACES = 8  # along a tube, for a law that acts at a point; the place is fitted 
 ACROSS_DEG = 90.0
 WAYS, TURNS = 8, 4  # directions of an offset, angles within a lobe
 LOBES = {"foliate_lands": 4, "foliate_obstacle": 4, "foliate_trefoil": 3, "foliate_hexafoil": 6}
-ALL_FIRST = ("foliate_trefoil", "foliate_hexafoil", "hertz")  # tried at all supports alone
 # Logarithm of a factor, within which two good codes of one structure differ: two standard
 # deviations of the priors, and what models in which nothing is hidden were off by on development
 # campaigns.
@@ -67,7 +66,7 @@ FAR: dict[str, Sequence[tuple[float, ...]]] = {
     "coulomb_friction": [(0.1,), (0.5,)],
     "support_offset": _ways(0.6, 1.2),  # within the gap, and pressed
     "preload": _ways(1.5, 4.0),
-    "hertz": [(0.02,), (0.1,)],
+    "hertz": [(4.0e-3,), (0.02,), (0.1,)],
     "root_stiffness": [(100.0, 3.0), (1.0e4, 30.0)],
     "saturation_stiffness": [(2.0, 1.0)],
     "clearance": [(0.2, 4.0), (0.6, 4.0)],
@@ -98,8 +97,7 @@ def locations(
             for turned in _turns(effect.id, across)
             for number in range(count)
         ]
-    found = effect.locations(values)
-    return found[:1] if effect.id in ALL_FIRST else found
+    return effect.locations(values)
 
 
 def _count(effect_id: str, places: int) -> int:

@@ -7,7 +7,7 @@ measurement, r is a smooth function even where the free motion is chaotic.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,6 +51,12 @@ def columns(
     """Return (coordinate, stretch, channel, line): derivatives of the lines at a Point by
     differences; 0 where a run fails. lines: those at the Point.
     """
+    moved, step = _moved(point, rows)
+    return _derivatives(holding_lines(bench, moved), lines, step)
+
+
+def _moved(point, rows):
+    """Return (Points with one coordinate moved, (coordinate,) by how much)."""
     x = to_vector(point, rows)
     step = np.array(
         [
@@ -58,10 +64,38 @@ def columns(
             for at, row in zip(x, rows, strict=True)
         ]
     )
-    moved = [to_point(x + own, rows, point) for own in np.diag(step)]
-    if not moved:
-        return np.zeros((0, *lines.shape), np.complex64)
-    return np.nan_to_num((holding_lines(bench, moved) - lines) / step[:, None, None, None])
+    return [to_point(x + own, rows, point) for own in np.diag(step)], step
+
+
+def _derivatives(found, lines, step):
+    """Return (coordinate, stretch, channel, line) of the lines found at moved Points."""
+    return np.nan_to_num((found - lines) / step[:, None, None, None])
+
+
+def fits(
+    bench: Bench,
+    starts: Sequence[tuple[Point, Sequence[Coordinate]]],
+    passes: int,
+    known: np.ndarray | None = None,
+) -> list[Fit]:
+    """Return the Fit of coordinates from each (Point, coordinates). All take their steps together,
+    so that their runs fill the lanes of the kernel; none depends on another.
+
+    passes: at most. known (nuisance, stretch, channel, line): columns of the nuisances among
+    the coordinates, which are kept; where None, they are found anew in each pass.
+    """
+    running = dict(enumerate(_fit(bench, *start, passes, known) for start in starts))
+    asked = {number: next(own) for number, own in running.items()}
+    done: dict[int, Fit] = {}
+    while asked:
+        lines = iter(holding_lines(bench, [point for own in asked.values() for point in own]))
+        for number, points in list(asked.items()):
+            try:
+                asked[number] = running[number].send(np.stack([next(lines) for _ in points]))
+            except StopIteration as end:
+                done[number] = end.value
+                del asked[number]
+    return [done[number] for number in running]
 
 
 def fit(
@@ -71,17 +105,24 @@ def fit(
     passes: int,
     known: np.ndarray | None = None,
 ) -> Fit:
-    """Return the Fit of coordinates from a Point.
+    """Return the Fit of coordinates from one Point, see `fits`."""
+    return fits(bench, [(start, rows)], passes, known)[0]
 
-    passes: at most. known (nuisance, stretch, channel, line): columns of the nuisances among
-    `rows`, which are kept; where None, they are found anew in each pass.
-    """
+
+def _fit(
+    bench: Bench,
+    start: Point,
+    rows: Sequence[Coordinate],
+    passes: int,
+    known: np.ndarray | None,
+) -> Generator[list[Point], np.ndarray, Fit]:
+    """Yield Points to be run, take their lines, and return the Fit."""
     low, high = bounds(rows)
     sd = np.array([row.sd for row in rows])
     own = np.array([row.of_effect for row in rows], bool)
     x = np.clip(to_vector(start, rows), low, high)
     point = to_point(x, rows, start)
-    lines = holding_lines(bench, [point])[0]
+    [lines] = yield [point]
     slope = np.zeros((len(rows), *lines.shape), np.complex64)
     if known is not None:
         slope[~own] = known
@@ -91,7 +132,9 @@ def fit(
     settled = SETTLED * INDEPENDENT * lines.size
     for _ in range(passes if np.isfinite(value) else 0):
         chosen = [row for row, new in zip(rows, renewed, strict=True) if new]
-        slope[renewed] = columns(bench, point, chosen, lines)
+        moved, size = _moved(point, chosen)
+        if moved:
+            slope[renewed] = _derivatives((yield moved), lines, size)
         weight = whitening(bench, lines)
         white = (slope * weight).reshape(len(rows), -1)
         information = 2.0 * INDEPENDENT * (white.conj() @ white.T).real.astype(float)
@@ -105,7 +148,7 @@ def fit(
             step /= max(1.0, np.abs(step[own]).max(initial=0.0) / LARGEST_STEP)
             tried = [np.clip(x + share * step, low, high) for share in SHARES]
             points = [to_point(each, rows, start) for each in tried]
-            found = holding_lines(bench, points)
+            found = yield points
             values = [
                 misfit(bench, each) + 0.5 * float(np.sum((at / sd) ** 2))
                 for each, at in zip(found, tried, strict=True)

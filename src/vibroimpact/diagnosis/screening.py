@@ -17,7 +17,7 @@ from .coordinates import Coordinate, bounds, effect_coordinates, to_point, to_ve
 from .explanations import Point, Term
 from .sensor_starts import sensor_terms
 
-AT_A_TIME = 64  # points whose lines are held in memory
+AT_A_TIME = 256  # points whose lines are held in memory
 TRIED = 12  # of the points that derivatives predict, on each stretch
 KEPT, FEWEST_KEPT = 0.3, 40  # of the points: those that are tried on all stretches
 BETWEEN = 8  # of the best points, beside which those half way to the next are tried

@@ -28,7 +28,7 @@ from .constants import NOTHING_LEFT, needed_gain
 from .coordinates import effect_coordinates
 from .explanations import Point, Term
 from .floor import floor_of
-from .gauss_newton import Fit, columns, fit
+from .gauss_newton import Fit, columns, fits
 from .measurement.usable import Refused
 from .plate_starts import plate_terms
 from .screening import Screened, Screening, screen
@@ -36,6 +36,7 @@ from .screening import Screened, Screening, screen
 RACED, EXCHANGED, FINALISTS = 10, 4, 4
 PER_EFFECT = 2  # starts of one effect in a race: its place, or another value but its size
 ONE_PLACE = 0.05  # of a tube's length: fits that end nearer are one
+CONTENDS = 0.6  # of the gain of the best fit, from which others are polished too
 RIVALS = 0.3  # of the gain of the best in a race, from which others are finalists
 STRONGER = 4.0  # dampers of a race
 RACE_PASSES, FINAL_PASSES = 3, 12  # at most
@@ -208,7 +209,8 @@ def _race(
             break
     strong = replace(at.screened, strength=STRONGER * at.screened.strength)
     sizes, starts = at.comparison.sizes, list(chosen.values())
-    ends = [fit(strong, own, effect_coordinates(own.terms, sizes), RACE_PASSES) for own in starts]
+    rows = [effect_coordinates(own.terms, sizes) for own in starts]
+    ends = fits(strong, list(zip(starts, rows, strict=True)), RACE_PASSES)
     points = [*starts, *(own.point for own in ends)]
     base, *found = holding_lines(at.screened, [beside, *points])
     now = misfit(at.screened, base)
@@ -239,20 +241,18 @@ def _finals(
 ) -> list[Hypothesis]:
     """Return the Hypotheses of points, fitted with all nuisances.
 
-    The columns of the nuisances are those at the first point; polished: for the best fit they are
-    found again where it ends, as long as that helps.
+    The columns of the nuisances are those at the first point; polished: for the best fit, and those
+    that gain nearly as much, they are found again where it ends, as long as that helps.
     """
-    fits: list[Fit] = []
-    known = None
-    for point in points:
-        if known is None:
-            known = _nuisance_columns(at, point)
-        if known is not None:
-            fits.append(_final(at, point, known))
-    if fits and polished:
-        number = int(np.argmin([each.objective for each in fits]))
-        fits[number] = _polished(at, fits[number])
-    return [_hypothesis(at, own, nothing) for own in fits]
+    columns_at = ((number, _nuisance_columns(at, point)) for number, point in enumerate(points))
+    first, known = next((own for own in columns_at if own[1] is not None), (len(points), None))
+    found = _fitted(at, points[first:], known)
+    if found and polished:
+        best = min(each.objective for each in found)
+        spare = 0.0 if nothing is None else max(nothing.fit.objective - best, 0.0)
+        least = best + (1.0 - CONTENDS) * spare
+        found = [_polished(at, each) if each.objective <= least else each for each in found]
+    return _hypotheses(at, found, nothing)
 
 
 def _nuisance_columns(at: _Benches, point: Point) -> np.ndarray | None:
@@ -263,18 +263,19 @@ def _nuisance_columns(at: _Benches, point: Point) -> np.ndarray | None:
     return columns(at.fitted, point, at.comparison.nuisances(), lines)
 
 
-def _final(at: _Benches, point: Point, known: np.ndarray) -> Fit:
-    """Return the Fit of a Point's effects and of the nuisances, whose columns are known."""
-    point = point.with_own_gains(at.comparison.structure.names)
-    rows = [*effect_coordinates(point.terms, at.comparison.sizes), *at.comparison.nuisances()]
-    return fit(at.fitted, point, rows, FINAL_PASSES, known)
+def _fitted(at: _Benches, points: Sequence[Point], known: np.ndarray | None) -> list[Fit]:
+    """Return the Fits of the effects of points and of the nuisances, whose columns are known."""
+    names, sizes = at.comparison.structure.names, at.comparison.sizes
+    starts = [point.with_own_gains(names) for point in points]
+    rows = [[*effect_coordinates(own.terms, sizes), *at.comparison.nuisances()] for own in starts]
+    return fits(at.fitted, list(zip(starts, rows, strict=True)), FINAL_PASSES, known)
 
 
 def _polished(at: _Benches, found: Fit) -> Fit:
     """Return a Fit from which new columns of the nuisances lead no further."""
     for _ in range(POLISHED):
         known = _nuisance_columns(at, found.point)
-        again = found if known is None else _final(at, found.point, known)
+        again = found if known is None else _fitted(at, [found.point], known)[0]
         settled = found.objective - again.objective < POLISHED_GAIN * effective_lines(
             at.fitted, again.lines
         )
@@ -284,14 +285,16 @@ def _polished(at: _Benches, found: Fit) -> Fit:
     return found
 
 
-def _hypothesis(at: _Benches, own: Fit, nothing: Hypothesis | None) -> Hypothesis:
-    """Return the Hypothesis of a Fit, compared with nothing."""
+def _hypotheses(at: _Benches, found: Sequence[Fit], nothing: Hypothesis | None) -> list[Hypothesis]:
+    """Return the Hypotheses of Fits, compared with nothing."""
     if nothing is None:
-        return Hypothesis(own, 0.0, 0.0, 0.0)
-    gain = (nothing.fit.objective - own.objective) / effective_lines(at.fitted, own.lines)
-    before, after = holding_lines(at.apart, [nothing.point, own.point])
-    apart, error = difference(at.apart, before, after)
-    return Hypothesis(own, gain, apart, error)
+        return [Hypothesis(own, 0.0, 0.0, 0.0) for own in found]
+    before, *after = holding_lines(at.apart, [nothing.point, *(own.point for own in found)])
+    out = []
+    for own, lines in zip(found, after, strict=True):
+        gain = (nothing.fit.objective - own.objective) / effective_lines(at.fitted, own.lines)
+        out.append(Hypothesis(own, gain, *difference(at.apart, before, lines)))
+    return out
 
 
 def difference(bench: Bench, before: np.ndarray, after: np.ndarray) -> tuple[float, float]:

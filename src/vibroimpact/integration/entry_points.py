@@ -37,10 +37,10 @@ def lanes_of(cases: int) -> int:
 
 
 def in_all_lanes(values: np.ndarray) -> np.ndarray:
-    """Return values (.., lane) in LANES lanes, so that numpy and BLAS sum a run alone in the same
-    order as a batch.
+    """Return values (.., lane), those of a run alone in LANES lanes, so that numpy and BLAS sum them
+    in the same order as those of a batch.
     """
-    return np.repeat(values, LANES // values.shape[-1], axis=-1)
+    return np.repeat(values, LANES, axis=-1) if values.shape[-1] == 1 else values
 
 
 @cache

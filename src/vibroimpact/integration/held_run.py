@@ -20,7 +20,7 @@ import numpy as np
 
 from vibroimpact.reduction.modal_model import ModalModel
 
-from .batch import Run, Schedule, start_amplitudes, start_state, to_lanes
+from .batch import Run, Schedule, start_amplitudes, start_state
 from .contact_convergence import CONTRACTION_LIMIT, IntegrationError, checked_contraction
 from .kernel_layout import MODE_COEFFICIENTS, ModalLayout
 from .kernels.lanes import LANES
@@ -309,12 +309,14 @@ class HeldRun(Run):
         )
 
     def _drive(self, first, count):
-        """Return (step, force channel and sensor, run)."""
-        out = np.zeros((count, self.model.drive_shapes.shape[1], len(self.runs)))
+        """Return (step, force channel, LANES): forces, measured motion, and 1 of the dead load."""
+        own, total = self.model.drive_shapes.shape[1], self.layout.drive_shapes.shape[1]
+        out = np.zeros((count, total, LANES))
         for lane, run in enumerate(self.runs):
             forces = run.force.shape[1]
             out[:, :forces, lane] = run.force_scale * run.force[first : first + count]
-            out[:, forces:, lane] = run.scale * run.motion[first : first + count]
+            out[:, forces:own, lane] = run.scale * run.motion[first : first + count]
+        out[:, own:] = 1.0
         return out
 
     def begin(self, initial: np.ndarray | None) -> None:
@@ -337,7 +339,7 @@ class HeldRun(Run):
                 for name in ("force", "displacement", "free"):
                     getattr(self.fluid, name)[..., lane] = getattr(fluid, name)[..., lane]
                 self.state.group_active[...] |= state.group_active
-        self.hold.measured[...] = to_lanes(self._drive(0, 1)[0], 0.0)[sensors]
+        self.hold.measured[...] = self._drive(0, 1)[0][sensors]
         self.hold.difference[...] = self.hold.measured
         for sensor in range(len(sensors)):
             rows = slice(*self.hold.row_start[sensor : sensor + 2])

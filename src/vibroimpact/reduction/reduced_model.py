@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -262,7 +263,9 @@ def _axis(config: ConfigPart) -> Sequence[float] | np.ndarray:
 def point_rows_of(structure: Any, config: ConfigPart) -> Callable[[str], np.ndarray]:
     """Return the function of a point's name that gives its displacement rows (3, dof)."""
     if config.structure.kind in TUBES:
-        return lambda name: structure.displacement_rows(named_arc_length(structure, config, name))
+        return cache(
+            lambda name: structure.displacement_rows(named_arc_length(structure, config, name))
+        )
     return structure.point_rows
 
 
@@ -429,8 +432,8 @@ def _sensor_fields(
     wanted = _wanted_sensors(structure, config)
     positions = [np.array(config.points.get(name, (0.0, 0.0, 0.0))) for name, _ in wanted]
     if config.structure.kind in TUBES:
-        places = [named_arc_length(structure, config, name) for name, _ in wanted]
-        positions = [structure.centreline.position(place) for place in places]
+        place_of = cache(lambda name: named_arc_length(structure, config, name))
+        positions = [structure.centreline.position(place_of(name)) for name, _ in wanted]
     rows = [AXES[axis] @ point_rows(name) for name, axis in wanted]
     directions = [AXES[axis] for _, axis in wanted]
     for name, normal in gauges:
