@@ -34,8 +34,8 @@ Every row of these tables is stated by a test that passed.
   under `--workflow-profile none`: Snakemake runs it before this package reads it. Run
   `vibroimpact check FILE` on files of others first; it runs nothing.
 - **Numbers.** Every number of a configuration acts or is refused: a test moves each and demands
-  another model, force or setting of a stage. Exceptions: velocities and criterion of `flow`
-  (`vibroimpact stability` alone), `record.stress_limit_Pa` (a flag), the rows of matrices in
+  another model, force or setting of a stage. Exceptions: velocities, criterion and turbulence of
+  `flow` (`vibroimpact stability` alone), `record.stress_limit_Pa` (a flag), the rows of matrices in
   files, the sampling frequency of a force (that of its file). The stiffness of a support with a
   Hertzian contact acts on its friction alone, and `grid.gap_m` names the case if every support
   has a gap of its own.

@@ -235,6 +235,11 @@ PROFILES = {
     "lattice": {"angle_deg": 20.0, "spacing_m": 0.05},
     "lattice by normal": {"normal": [0.0, 1.0, 0.3]},
 }
+MIXTURE = {
+    "void_fraction": 0.3,
+    "liquid_density_kg_per_m3": 750.0,
+    "vapour_density_kg_per_m3": 33.0,
+}
 NO_FIT = {"identification": None}
 
 
@@ -342,6 +347,24 @@ def _configurations():
         if kind != "lags":
             del flow["stretches"]
         yield f"flow {kind}", changed(BASE, flow=flow)
+    outside = {
+        "kind": "outside",
+        "viscosity_Pa_s": 9.0e-5,
+        "confinement": {"kind": "annulus", "equivalent_diameter_m": 0.05},
+        "two_phase_damping": {"coefficient": 0.04, "plateau": [0.4, 0.7]},
+    }
+    flow = {key: value for key, value in ACTING.items() if key != "density_kg_per_m3"}
+    stretch = {**ACTING["stretches"][0], "mixture": MIXTURE}
+    yield "mixture", changed(
+        BASE,
+        structure__fluid=[
+            {"kind": "inside", "mixture": MIXTURE, "to_m": [0.5, 0.0, 0.0]},
+            {**outside, "mixture": MIXTURE, "to_m": [0.4, 0.0, 0.0]},
+            {**outside, "mixture": {**MIXTURE, "void_fraction": 0.85}, "from_m": [0.5, 0.0, 0.0]},
+        ],
+        flow={**flow, "mixture": MIXTURE, "stretches": [stretch],
+              "coupling": {"kind": "quasi_steady", **COUPLINGS["quasi_steady"]}},
+    )  # fmt: skip
     base = {"kind": "base_motion", "direction": OBLIQUE, "obstacles": "fixed"}
     moved = {"base_displacement_m": 1e-4, "base_velocity_m_per_s": 1e-3}
     for signal in (

@@ -38,6 +38,7 @@ EXEMPT = {
     "record.stress_limit_Pa": "changes a flag alone",
     "flow.velocity_m_per_s": "is read by `vibroimpact stability` alone",
     "flow.criterion": "is read by `vibroimpact stability` alone",
+    "flow.turbulence": "is read by `vibroimpact stability` alone",
     "flow.coupling.reduced_velocity": "makes a warning alone",
     "wear.": "acts on the wear life alone, see tests/wear",
     "structure.points": "are rows of matrices in files",

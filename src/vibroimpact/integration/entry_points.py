@@ -37,7 +37,7 @@ def lanes_of(cases: int) -> int:
 
 
 def in_all_lanes(values: np.ndarray) -> np.ndarray:
-    """Return values (.., lane), those of a run alone in LANES lanes, so that numpy and BLAS sum them
+    """Return values (.., lane), those of a run alone in LANES lanes: numpy and BLAS then sum them
     in the same order as those of a batch.
     """
     return np.repeat(values, LANES, axis=-1) if values.shape[-1] == 1 else values
