@@ -231,7 +231,7 @@ def test_the_wheel_runs_the_small_study_to_its_tables(environment, study):
     moved = folder.rename(folder.with_name("déplacé"))
     assert planned(snakemake(environment, moved, "-n", "--until", "_consistency")) == {}
     library = next(environment.glob("lib/*/site-packages/vibroimpact"))
-    with (library / "spectra" / "welch.py").open("a") as file:
+    with (library / "identify" / "spectra" / "welch.py").open("a") as file:
         file.write("\n# an edit\n")
     again = planned(snakemake(environment, moved, "-n", "--until", "_consistency"))
     assert "_spectra" in again and not {"_basis", "_simulate"} & set(again)
