@@ -18,7 +18,7 @@ from .checks.stated import check_row
 from .force_kinds import BASE
 from .signals import CampaignSignals, transfer_band
 
-# How often the acceleration of the base is integrated for what a kind of sensor measures of it.
+# How often the acceleration of the base is integrated to match a kind of sensor.
 INTEGRALS = {"acceleration": 0, "velocity": 1}
 # Of the lower end of the excited band. Below the first nothing is integrated, above the second
 # everything: the offset and the drift of an accelerometer grow without end.

@@ -25,7 +25,7 @@ NEEDED = {
     "force_channel_direction": ("force_channel", "xyz"),
     "gap": ("record",),
 }
-# Derived from the rest where they are missing.
+# Derived from the rest if they are missing.
 FILLED = {
     "record_name": ("record",),
     "load_rms": ("record",),
@@ -51,7 +51,7 @@ TEXTS = (
     "record_name",
     "split",
 )
-# Where values are read only after the file is known to be sound.
+# Their values are read only after the file is known to be sound.
 SERIES = ("force", "response", "voltage")
 SEE = "see docs/bring_your_own.md"
 NO_FORCE = (

@@ -32,8 +32,8 @@ Optional variables:
 - valid_samples (record): number of samples that count; the rest is NaN
 
 Attributes: sampling_frequency (Hz), antialias, start_up, period_samples (0 if not periodic),
-transient_periods, source, band_Hz (low, high: the band that is looked at; without it, what the
-force excites). Between samples the force is band-limited, not constant.
+transient_periods, source, band_Hz (low, high: the band of the analysis; by default the band that
+the force excites). Between samples the force is band-limited, not constant.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ from .force_kinds import BASE, FORCE, load_unit, unit_kinds
 from .stated_values import KINDS as KINDS
 from .stated_values import Kind as Kind
 
-# What is written to the attribute long_name, and to units where the file does not state them.
+# The attributes units, if the file does not state them, and long_name.
 ABOUT = {
     "force": ("", "excitation force of the record"),
     "response": ("", "response of the record, in the unit of its channel"),

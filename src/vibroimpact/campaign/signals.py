@@ -261,8 +261,8 @@ class Transfer:
     power (channel,): mean square of the responses in the band.
     following (channel,): share of that power which follows the force, 0 to 1.
     averages: number of segments.
-    responding: Hz, the lowest frequency of the response: below it lies RESPONDING of the power that
-    follows the force, of the channel in which that begins lowest.
+    responding: Hz, the lowest frequency of the response, over the channels: below it lies
+    RESPONDING of the power that follows the force.
     """
 
     frequency: np.ndarray

@@ -19,7 +19,7 @@ TESTS = {
     "T6": "stationarity",
 }
 
-# What the bounds of a parameter are multiples of; linear_stage.scales computes the sizes.
+# Units of the bounds of a parameter; linear_stage.scales computes the sizes.
 SCALES = {
     "one": "1",
     "gap": "the largest nominal clearance",
@@ -41,7 +41,7 @@ SCALES = {
     "drag": "the damping constant over length and RMS velocity of the drive point",
 }
 WHERE = ("contact", "nonlinear structure", "linear structure", "measurement")
-# What laws have in common that do the same to a structure.
+# Groups of laws that act alike on a structure.
 FAMILIES = (
     "friction",
     "contact stiffness",

@@ -32,10 +32,10 @@ def _held(values, location):
 
 def locations(values: Values) -> list[str]:
     """Return the directions along which a rod may hold the structure: that of a force that is along
-    no axis, and x, y and z; of a tube the two of these that are least along its start, where it is
-    held: hardly any of it moves along the third.
+    no axis, and x, y and z; for a tube the two of these that are least along its held start: hardly
+    any of it moves along the third.
     """
-    force = values["excitation"].get("direction")  # none of what acts along a whole tube
+    force = values["excitation"].get("direction")  # none for a load along a whole tube
     oblique = force is not None and np.abs(unit_vector(force)).max() < ALONG
     names = [ALONG_FORCE] if oblique else []
     start = places.start_direction(values)

@@ -2,7 +2,7 @@
 
 from .effect import Effect, Parameter, Values
 
-# Damping ratio: a configuration takes less than 0.3, of which no resonance is left.
+# Damping ratio: a configuration takes less than 0.3, at which no resonance is left.
 LARGEST = 0.29
 
 

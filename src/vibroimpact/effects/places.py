@@ -17,8 +17,8 @@ from .effect import Values
 
 STOP = "clearance_stop"  # name of the support that the effect clearance adds
 SHARES = (0.0625, 0.1875, 0.3125, 0.4375)  # of the limit of an element that is split
-# of a place on a tube that no point of it names: its arc length, arc_355_6mm is at 355.6 mm; of a
-# direction other than that of the force its angle, arc_355_6mm_turned_m9_5deg is turned by -9.5
+# an unnamed place on a tube by its arc length: arc_355_6mm is at 355.6 mm; a direction other than
+# that of the force by its angle: arc_355_6mm_turned_m9_5deg is turned by -9.5
 BETWEEN = re.compile(r"arc_([\d_]+)mm(?:_turned_(m?[\d_]+)deg)?")
 ALONG = "along_tube"  # of an effect whose place on the tube is one of its parameters
 TURNED = "along_tube_turned"  # the same, and its direction across the tube
@@ -135,8 +135,8 @@ def with_mass(values: Values, name: str, point: str, mass_kg: float) -> Values:
 
 
 def between(arc_length_m: float, turned_deg: float | None = None) -> str:
-    """Return the location of a place on a tube; turned_deg: of an effect that acts there in a
-    direction that is turned from that of the force, see across.
+    """Return the location of a place on a tube; turned_deg: angle from the direction of the force
+    to that of the effect, see across.
     """
     place = f"arc_{1e3 * arc_length_m:.1f}mm"
     if turned_deg is not None:
@@ -172,7 +172,7 @@ def _numbers(location):
 
 
 def place_in_words(location: str) -> str:
-    """Return a location in words: a place that no point names by where it is."""
+    """Return a location in words: an unnamed place by its position."""
     arc_length, angle = arc_length_m(location), turned_deg(location)
     if arc_length is None:
         return IN_WORDS.get(location) or MODE.sub(r"mode \1", location)

@@ -12,7 +12,7 @@ import numpy as np
 
 from vibroimpact.reduction.modal_model import ModalModel
 
-# Terms of the contacts and of the local elements that are not of degree one: column -> what it is.
+# Terms of the contacts and of the local elements that are not of degree one: column -> in words.
 CONTACT_TERMS = {
     "hertz": "a Hertzian contact",
     "hunt_crossley": "Hunt-Crossley damping",

@@ -15,7 +15,7 @@ def modes_in_flow(config: Config) -> str:
     of the supports.
 
     The equivalent k and c are those that the shipped law estimates at the largest load and the
-    smallest gap of the grid; that state is left out where the law does not hold.
+    smallest gap of the grid; that state is left out if the law does not hold.
     """
     assert config.flow is not None, "there is a flow"
     states: dict[str, tuple[float | None, float]] = {"open": (0.0, 0.0), "closed": (None, 0.0)}

@@ -272,12 +272,13 @@ def _reason(reading: Reading, name: str) -> str:
         return str(text)
     place = f"{lacking[0]['load_rms_N']:.3g} N at {1e3 * lacking[0]['gap_m']:.4g} mm"
     others = len(lacking) - 1
-    more = f", and likewise {others} more case{'s' if others > 1 else ''} beside it"
+    more = f", and likewise {others} more case{'s' if others > 1 else ''}"
     return f"{text} ({place}{more if others else ''})"
 
 
 def _bound(reading: Reading) -> float:
-    """Return what k (N/m) is below at a level: the largest bound or value of the cases beside it.
+    """Return the upper bound of k (N/m) at a level: the largest bound or value of the cases next to
+    it.
 
     NaN if k is resolved, or a case has neither.
     """

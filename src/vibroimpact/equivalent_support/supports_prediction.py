@@ -37,7 +37,7 @@ from .linear_prediction import (
 ONE, EACH, SECANT = "one for all", "each its own", "secant"
 IDENTIFIED_COLUMNS = ("k_N_per_m", "c_N_s_per_m")
 SECANT_COLUMNS = ("secant_k_N_per_m", "secant_c_N_s_per_m")
-# Variables of the two files that are read, beside those of the identification.
+# Variables of the two files that are read, in addition to those of the identification.
 RECORD_READ = ("stress_rms", "stress_peak", "rms_force", "contact_fraction")
 SPECTRA_READ = ("psd_displacement_mean",)
 COLUMNS = (
@@ -68,7 +68,7 @@ def linear_supports(
 ) -> LinearSupports:
     """Return the LinearSupports of one gap and load from its rows of equivalent.csv.
 
-    A k or c that is not resolved is 0: the data do not tell it from a support that is not there.
+    A k or c that is not resolved is 0: the data can not distinguish it from no support.
 
     groups: identification.groups.
     columns: names of the columns with k and c.
@@ -167,7 +167,7 @@ def supports_prediction_rows(
     """Return the rows, with COLUMNS, that compare linear supports with the simulated contacts.
 
     There are those of one k and c for all, of each its own, and of the secant values of each. An
-    identification from responses alone does not tell the level of the force, so that one gain of
+    identification from responses alone does not give the level of the force, so that one gain of
     the input is free: gain_dB makes the mean error of the sensors in the whole band 0, in dB, and
     error_with_gain_dB is the rest.
 

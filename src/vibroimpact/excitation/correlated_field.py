@@ -79,7 +79,7 @@ def independent_parts(covariance: np.ndarray, allowed: np.ndarray) -> np.ndarray
     """Return (function, part): factors of independent parts whose squares add to the covariance.
 
     A Cholesky factor in the order of the functions. A function whose variance the parts before it
-    explain, but for what is allowed to be missing, adds no part.
+    explain, up to the allowed share, adds no part.
 
     covariance: (function, function).
     allowed: (function,) largest part of each variance that may be missing.

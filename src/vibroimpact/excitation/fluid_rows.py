@@ -2,7 +2,7 @@
 
 On modes q, in a stretch of one velocity V and density rho, the force is -O (a0 V² q + ...) with the
 overlap O = rho/2 int phi phi^T ds. Gauss points would be rows sqrt(weight) phi. The eigenvectors of
-O, scaled by what a mode resists with, give the fewest rows for the same error.
+O, scaled by the resistance of each mode, give the fewest rows for the same error.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from .turbulence import cut_at_nodes, directions, shapes_at
 
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(4)  # exact for the squares of cubic shapes
 POINTS, WEIGHTS = 0.5 * (POINTS + 1.0), 0.5 * WEIGHTS
-# What is left out changes no squared frequency, with any support closed, by more than this share,
+# The omitted part changes no squared frequency, with any support closed, by more than this share,
 # and no damping ratio by more than half of it.
 TOLERANCE = 1.0e-3
 
@@ -79,9 +79,9 @@ def resistance(force: FluidForce, velocity: float, omega: np.ndarray) -> np.ndar
 def independent_rows(overlap: np.ndarray, resistance: np.ndarray) -> np.ndarray:
     """Return rows (mode, row) whose products sum to an overlap (mode, mode).
 
-    With r the resistance (mode,), what they leave out is at most TOLERANCE sqrt(r_i r_j) in the
-    sense of x^T rest x. Contact only stiffens, so that TOLERANCE holds with supports open and
-    closed. Modes that the flow does not move have no part in any row.
+    With r the resistance (mode,), the omitted rest is at most TOLERANCE sqrt(r_i r_j) in the sense
+    of x^T rest x. Contact only stiffens, so that TOLERANCE holds with supports open and closed.
+    Modes that the flow does not move have no part in any row.
     """
     moved = np.flatnonzero(np.diag(overlap) > 0.0)
     scale = np.sqrt(resistance[moved])

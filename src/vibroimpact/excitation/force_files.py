@@ -101,7 +101,7 @@ def _newtons(path: Path, variable: str, signal: Signal) -> np.ndarray:
         values = signal.values * (si_factor(signal.unit, "force") if signal.unit else 1.0)
     except UnitError as error:
         raise ForceFileError(f"{path}: {variable} {error}") from error
-    odd = ~(np.abs(values) <= LARGEST_N)  # true for what is not a number, too
+    odd = ~(np.abs(values) <= LARGEST_N)  # true for NaN, too
     if odd.any():
         raise ForceFileError(
             f"{path}: {variable}[{np.argmax(odd)}] is not finite or beyond any force: cut or repair"

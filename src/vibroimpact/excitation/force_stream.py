@@ -217,8 +217,8 @@ class _Interpolated:
         spectrum[first : highest + 1] = lines
         values = np.fft.irfft(spectrum, short) * short
         self._rows = max(1, BLOCK_STEPS // factor)
-        # The record is periodic. It is extended in front by what the taps of the first steps need,
-        # and behind up to the end of the last block.
+        # The record is periodic. It is extended in front for the taps of the first steps, and
+        # behind up to the end of the last block.
         if factor > 1:
             end = -(-short // self._rows) * self._rows
             values = values[np.arange(1 - TAPS // 2, end + TAPS // 2 + 1) % short]
@@ -233,8 +233,8 @@ class _Interpolated:
         windows = np.lib.stride_tricks.sliding_window_view(
             self._short[first : first + self._rows + TAPS - 1], TAPS
         )
-        # Many forces act at once where exact_rms is false. A copy makes the product several times
-        # as fast, but with other last bits; the other forces keep theirs.
+        # Many forces act at once if exact_rms is false. A copy makes the product several times as
+        # fast, but with other last bits; the other forces keep theirs.
         return ((windows if self.exact_rms else windows.copy()) @ self._weights).ravel()
 
 

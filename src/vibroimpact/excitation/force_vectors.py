@@ -23,7 +23,7 @@ GAUSS = (
     (0.8611363115940526, 0.3478548451374538),
 )
 # Amplitude of the base mode per metre of base motion. A contact force moves the base by the square
-# of this times what it moves a mass of 1 kg.
+# of this times the motion of a mass of 1 kg.
 BASE_SCALE = 1.0e-7
 
 
@@ -46,7 +46,7 @@ def force_vector(
     if excitation.kind == "base_motion":
         inertia = structure.inertia
         if isinstance(structure, TubeStructure) and excitation.obstacles == "moving":
-            inertia = inertia - structure.carried_inertia  # a fluid moves with what confines it
+            inertia = inertia - structure.carried_inertia  # a fluid moves with its confinement
         return -unit_vector(excitation.direction) @ inertia
     direction = turned_direction(excitation.direction, excitation.turn_deg, axis)
     row = excitation.factor * (direction @ point_rows(excitation.point))

@@ -34,8 +34,8 @@ def drive_shapes(
 ) -> np.ndarray:
     """Return (mode, force_channel): shapes of independent forces, per newton of the load.
 
-    The first channel of a direction is the force in that direction summed along the tube; what the
-    sum does not determine follows in further channels. They are as many as force.tolerance asks.
+    The first channel of a direction is the force in that direction summed along the tube; further
+    channels hold the rest, as many as force.tolerance asks.
 
     shapes: (dof, mode) in kg^-1/2.
     omega: (mode,) rad/s, ascending.

@@ -1,5 +1,5 @@
-"""A tube in a flow: its reduced model, its motion along the fluid-elastic force, and what the flow
-meets, at Gauss points along it.
+"""A tube in a flow: its reduced model, its motion along the fluid-elastic force, velocity and mass,
+at Gauss points along it.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ ALONG, ACROSS = "along the force", "across the force"  # names of the two direct
 class TubeInFlow:
     """A tube in a flow.
 
-    model: its ModalModel without contact. diameter: m. along: what the flow meets. shapes
-    {direction: (mode, place)}: motion per modal amplitude along the fluid-elastic force.
+    model: its ModalModel without contact. diameter: m. along: velocity, density and mass along it.
+    shapes {direction: (mode, place)}: motion per modal amplitude along the fluid-elastic force.
     """
 
     model: ModalModel
@@ -103,7 +103,7 @@ def _motion(config: Config, line: Centreline, places: np.ndarray) -> tuple[Modal
 
 
 def _mass(config: Config, line: Centreline, places: np.ndarray) -> np.ndarray:
-    """Return (place,) kg/m that moves across the tube: its own and that of the fluids."""
+    """Return (place,) kg/m that moves across the tube: mass of the tube and of the fluids."""
     structure: ConfigPart = config.structure
     beam = section_beam(structure.section, structure.material, structure.theory)
     beams = beams_in_fluid(beam, fluid_stretches(structure, line), places)

@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 
 from vibroimpact.excitation.fluid_elastic import FluidForce
 
-SCANNED = 60  # velocities between 0 and the highest, between which a crossing is looked for
+SCANNED = 60  # velocities from 0 to the highest; a crossing is sought between neighbours
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +79,7 @@ def critical_velocity(
     highest: float,
 ) -> float:
     """Return the lowest velocity in m/s, up to `highest`, at which an eigenvalue crosses to growth;
-    NaN where none does.
+    NaN if none does.
     """
 
     def growth(velocity: float) -> float:

@@ -28,11 +28,11 @@ TEMA: dict[int, tuple[Callable[[float], float], float, float, Callable[[float], 
 
 @dataclass(frozen=True, eq=False)
 class Along:
-    """What the flow meets along a tube, at Gauss points.
+    """Velocity, density and mass along a tube in a flow, at Gauss points.
 
     weight (place,): m of arc length. length: of the tube, m. factor (place,): velocity over that of
-    the flow, 0 where there is none. density, mass (place,): of the fluid outside in kg/m³, and of
-    tube and fluids in kg/m.
+    the flow, 0 outside the flow. density, mass (place,): of the fluid outside in kg/m³, and of tube
+    and fluids in kg/m.
     """
 
     weight: np.ndarray

@@ -22,7 +22,7 @@ from vibroimpact.reduction.modal_model import ModalModel
 from .coupled import Zone, critical_velocity, system
 
 STATES = 20  # lowest modes with the supports that the force couples
-PASSES = 8  # of the shape of a cycle and the springs that it makes; three agree to a per cent
+PASSES = 8  # iterations of a cycle's shape and its springs; three agree to a per cent
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +51,7 @@ class ModelInFlow:
     def critical(self, stiffness: np.ndarray, damping: np.ndarray) -> tuple[float, np.ndarray]:
         """Return (V_c in m/s, motion (support,) of the supports in the mode that begins to grow).
 
-        V_c is NaN where nothing grows up to the highest velocity.
+        V_c is NaN if nothing grows up to the highest velocity.
         stiffness, damping: (support,) N/m and N s/m, in the order of `supports`.
         """
         model, contacts = self.model, [support.contact for support in self.supports]
@@ -69,8 +69,8 @@ class ModelInFlow:
         return found, np.array([np.linalg.norm(contact.T @ growing) for contact in contacts])
 
     def limit_cycle(self, gap: float, amplitude: float) -> float:
-        """Return the velocity in m/s of the cycle between elastic stops at a gap in which the
-        support that moves most has an amplitude, both in m; NaN where there is none.
+        """Return the velocity in m/s of the limit cycle between elastic stops at a gap, with a
+        given amplitude at the support that moves most, both in m; NaN if there is none.
         """
         contact = self.held
         none = np.zeros(len(contact))

@@ -19,7 +19,7 @@ from .along import TubeInFlow, tube_in_flow
 from .coupled import Zone, critical_velocity, oscillations, system
 from .critical_velocity import connors, mass_damping, tema_factor
 
-MODES = 8  # the lowest of each direction that are told
+MODES = 8  # reported: the lowest of each direction
 STATES = 20  # lowest modes that a fluid-elastic force couples
 LEAST_SHARE = 0.05  # of a mode's energy in a direction: below, the force does not drive it
 VELOCITIES = 41  # of the eigenvalues, from 0 to the highest
@@ -72,8 +72,8 @@ class StabilityRow:
 class Eigenvalues:
     """Oscillations against velocity, with a fluid-elastic force, all supports holding.
 
-    velocity (velocity,) m/s. frequency, damping_ratio (velocity, mode): Hz. critical: m/s, NaN
-    where no eigenvalue grows up to `searched`.
+    velocity (velocity,) m/s. frequency, damping_ratio (velocity, mode): Hz. critical: m/s, NaN if
+    no eigenvalue grows up to `searched`.
     """
 
     velocity: np.ndarray
@@ -86,7 +86,7 @@ class Eigenvalues:
 @dataclass(frozen=True, eq=False)
 class Stability:
     """The rows of all modes, velocities and states of the supports, and the Eigenvalues of a
-    fluid-elastic force where one is given; warnings where that is extrapolated.
+    fluid-elastic force if one is given; warnings if that is extrapolated.
     """
 
     rows: tuple[StabilityRow, ...]
@@ -94,8 +94,8 @@ class Stability:
     warnings: tuple[str, ...] = ()
 
     def worst(self, velocity: float, inactive: int) -> StabilityRow | None:
-        """Return the row with the largest ratio at a velocity, so many supports not holding; None
-        where there are fewer supports.
+        """Return the row with the largest ratio at a velocity with `inactive` supports not holding;
+        None if there are fewer supports.
         """
         rows = [
             row
@@ -118,11 +118,11 @@ def stability(
 ) -> Stability:
     """Return the Stability of the tube of a configuration with a section `flow`.
 
-    stiffness: of a support that holds, N/m, along each direction that it acts in; its contact
-    stiffness where None. damping: N s/m. inactive: so many supports at most do not hold, in every
+    stiffness: of a support that holds, N/m, along each direction that it acts in; None for its
+    contact stiffness. damping: N s/m. inactive: at most so many supports do not hold, in every
     combination.
 
-    Raises NoFlow where the configuration has no flow, or no tube.
+    Raises NoFlow if the configuration has no flow or no tube.
     """
     flow, tube = _in_flow(config)
     return _stability(_Held(flow, tube, stiffness, damping), inactive)
@@ -132,7 +132,7 @@ def stability_of_states(
     config: Config, states: Mapping[str, tuple[float | None, float]]
 ) -> dict[str, Stability]:
     """Return {name: Stability} for states {name: (stiffness, damping)} of all supports, as in
-    `stability`, which see.
+    `stability`.
     """
     flow, tube = _in_flow(config)
     return {name: _stability(_Held(flow, tube, *own), 0) for name, own in states.items()}
@@ -151,7 +151,7 @@ def _in_flow(config: Config) -> tuple[Flow, TubeInFlow]:
 
 
 def _stability(held: _Held, inactive: int) -> Stability:
-    """Return the Stability with so many supports at most that do not hold."""
+    """Return the Stability with at most `inactive` supports that do not hold."""
     flow = held.flow
     rows = tuple(row for names in held.states(inactive) for row in held.rows(names))
     found = Stability(rows, held.eigenvalues(flow.coupling) if flow.coupling else None)

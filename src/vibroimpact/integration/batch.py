@@ -79,8 +79,8 @@ ENERGY_TERMS = (
 class Schedule:
     """Rates [Hz], durations [s] and scheme of a run (see modal_step), and its output filter.
 
-    derivatives (sensor,): how often the displacement of each sensor is differentiated in time, 0 to
-    2, where an acceleration of every sensor stands otherwise; empty for accelerations.
+    derivatives (sensor,): order of the time derivative of each sensor's displacement, 0 to 2,
+    recorded in place of its acceleration; empty for accelerations.
     """
 
     steps_per_second: float
@@ -105,8 +105,8 @@ class Schedule:
     def start_ticks(self) -> int:
         """Ticks before the first one whose output the record's second filter stage needs.
 
-        Negative where the filter reaches back before the start of the run, when the structure was
-        at rest.
+        Negative if the filter reaches back before the start of the run, when the structure was at
+        rest.
         """
         return round(self.start_up * self.steps_per_second / RATIO) - self.filter.delay + BEHIND
 
@@ -165,11 +165,11 @@ def rest_state(
     start: np.ndarray | None = None,
 ) -> np.ndarray | None:
     """Modal amplitudes (mode, LANES) at which each case rests under its dead loads, against its
-    supports where it must; gap, imperfection as of integrate_batch.
+    supports if need be; gap, imperfection as of integrate_batch.
 
-    start (mode, LANES): where it rests without dead loads, see preload.seated; None for zero.
+    start (mode, LANES): its rest without dead loads, see preload.seated; None for zero.
 
-    None where it rests at zero (no dead load, all supports centred and none pressing) or nowhere
+    None if it rests at zero (no dead load, all supports centred and none pressing) or nowhere
     (a mode is free, and no start is known).
     """
     loaded = model.constant_force.any() or model.centre_offset.any() or model.presses_at_rest
@@ -455,7 +455,7 @@ def start_amplitudes(
     model: ModalModel, rest: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Modal amplitudes and their rates at the start, (mode, LANES) each: the model's initial state,
-    the same in every lane, from where the structure rests.
+    the same in every lane, added to the rest position.
 
     rest (mode, LANES): see `rest_state`; None for 0.
     """
@@ -506,7 +506,7 @@ def start_state(
 
 def start_fluid(layout: ModalLayout, fluid: Fluid, q: np.ndarray, v: np.ndarray) -> None:
     """Put the fluid-elastic force at modal amplitudes and rates (mode, LANES) into its table. The
-    lags are 0: the flow begins then.
+    lags are 0: the flow begins at this time.
     """
     shapes, own = layout.model.fluid_shapes.T, slice(layout.lanes)
     fluid.displacement[...] = fluid.free[...] = (shapes @ q)[:, own]

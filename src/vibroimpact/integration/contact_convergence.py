@@ -1,4 +1,4 @@
-"""Convergence of the contact iteration of a step, and the error raised where it is too slow."""
+"""Convergence of the contact iteration of a step, and the error raised if it is too slow."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ MOST_STEPS = 1.0e8  # per second, that integration.steps_per_second takes
 
 
 def more_steps(needed: float) -> str:
-    """Return the remedy of a step that is too long, where the key takes as many steps."""
+    """Return the remedy of a step that is too long: more steps, as far as the key takes them."""
     if needed <= MOST_STEPS:
         return f"raise integration.steps_per_second to at least {int(np.ceil(needed))}"
     return (
@@ -41,7 +41,7 @@ class IntegrationError(Exception):
         self.case = case
 
     def of(self, cases: Sequence[object]) -> IntegrationError:
-        """Return the error with the name of its case, of those of the batch, before the message."""
+        """Return the error with its case, one of the batch's, named before the message."""
         if self.case is None:
             return self
         return IntegrationError(f"{cases[self.case]}: {self}", self.case)
@@ -94,7 +94,7 @@ def checked_contraction(
     """
     _require_digits(model, steps_per_second, scheme)
     contraction = contact_contraction(model, 1.0 / steps_per_second, scheme)
-    if not contraction <= CONTRACTION_LIMIT:  # NaN where the step has no numbers for a mode
+    if not contraction <= CONTRACTION_LIMIT:  # NaN if the step has no numbers for a mode
         largest = max(
             model.contact_stiffness.max(initial=0.0),
             np.abs(model.local_laws.stiffness).max(initial=0.0),

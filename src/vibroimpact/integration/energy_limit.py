@@ -1,8 +1,8 @@
 """How far the energy balance of a run may be open before its numbers stop to be of use.
 
-The residuals of a record are shares of the work that was put in. In a stationary response that work
-is what damping takes, so that a numerical loss of this share is a damping that the structure does
-not have: it lowers the mean square response by about the same share, the RMS by half of it.
+The residuals of a record are shares of the work that was put in. In a stationary response damping
+takes that work, so that a numerical loss of this share is a damping that the structure does not
+have: it lowers the mean square response by about the same share, the RMS by half of it.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ ENERGY_RESIDUALS = ("energy_residual", "potential_energy_residual")
 def energy_flag(record: xr.Dataset) -> str:
     """Return why the energy balance of a run forbids to use its numbers, or an empty text.
 
-    record: with some of ENERGY_RESIDUALS. potential_energy_residual is NaN where contacts dissipate
-    and it says nothing; energy_residual always has a value.
+    record: with some of ENERGY_RESIDUALS. potential_energy_residual is NaN if contacts dissipate:
+    it says nothing then; energy_residual always has a value.
     """
     found = {name: float(record[name]) for name in ENERGY_RESIDUALS if name in record}
     if math.isnan(found.get("energy_residual", 0.0)):

@@ -24,8 +24,8 @@ class Traces:
     element_displacement (case, element, step) m, element_force: N on the structure.
     energy {term: (case,)} J over the whole run: input_work; dissipated by modal damping;
         contact_work done by contacts and elements; mechanical, the change of the energy of the
-        modes; stored, the change of that in contacts and elements; where a flow acts fluid_work,
-        its part of the input work.
+        modes; stored, the change of that in contacts and elements; in a flow fluid_work, its part
+        of the input work.
     sliding_work (case, support) J: normal force times slip.
     slip_work (case, element) J: slider force times slip.
     """

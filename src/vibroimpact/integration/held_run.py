@@ -3,7 +3,8 @@
     q'' + D q' + W q = b F + C^T f(Cq, Cq') + sum_s S_s^T u_s,      u_s = c_s (v_s - S_s q')
 
 v_s is the measured velocity of sensor s, S_s its row and c_s the strength of its damper. Where
-model and structure agree, the dampers carry noise; the holding force u_s is what the model lacks.
+model and structure agree, the dampers carry noise; the holding force u_s is a force missing in the
+model.
 
 Source: a passive, collocated observer: D.G. Luenberger, IEEE Trans. Autom. Control 16 (1971)
 596-602; M. Demetriou, Math. Control Signals Syst. (natural observers of second-order systems).
@@ -30,7 +31,7 @@ from .preload import seated
 OWN_COEFFICIENTS = ("shapes", "row_compliance", *MODE_COEFFICIENTS)  # of Modal, by lane
 OWN_OBSTACLES = ("stiffness", "gap", "offset_1", "offset_2")  # of Contact
 NO_DAMPING = 1e-12  # N s/m: as good as none, and yet a term of the general law
-HELD_TURN = 1.0  # rad of a mode in a step: above, its velocity is not known from displacements
+HELD_TURN = 1.0  # rad of a mode in a step: above, displacements do not give its velocity
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,12 +80,12 @@ def hold(
 ) -> HeldRecords:
     """Return the HeldRecords of any number of runs.
 
-    highest_Hz: modes above it are not held. What was measured ends there: dampers on the modes
-    above would only take from what rings in them.
+    highest_Hz: modes above it are not held. The measured band ends there: dampers on higher modes
+    would only drain their ringing.
 
     The result of a run does not depend on the others. A run that diverges, or whose contact is too
-    stiff for the step, is NaN. All runs have the same numbers of sensors and forces; of a model
-    with more supports than the first one's, the first ones are kept.
+    stiff for the step, is NaN. All runs have the same numbers of sensors and forces; a model with
+    more supports than the first one keeps its first ones.
     """
     sensors = runs[0].motion.shape[1]
     supports = len(runs[0].model.support_names)
@@ -176,9 +177,9 @@ class _Prepared:
         return offset[..., 0], None if rest is None else rest[:, 0]
 
     def _signature(self, model):
-        """Return what models have in common that can be integrated side by side.
+        """Return the key that models share if they can be integrated side by side.
 
-        Raises IntegrationError where the contact is too stiff for the step.
+        Raises IntegrationError if the contact is too stiff for the step.
         """
         self.contraction(model)
         layout = self.layout(model)
@@ -207,7 +208,7 @@ class _LaneLayout(ModalLayout):
         self.alike = all(lane is layouts[0] for lane in layouts)
 
     def modal(self, dt: float) -> Modal:
-        """The kernel's Modal, by lane where the models differ."""
+        """The kernel's Modal, by lane if the models differ."""
         return self._stacked([lane.modal(dt) for lane in self.layouts], OWN_COEFFICIENTS)
 
     def contact(self, gap: np.ndarray, imperfection: np.ndarray, contraction: float) -> Contact:
@@ -222,7 +223,7 @@ class _LaneLayout(ModalLayout):
         return _own_lanes(tables, [name for name, column in columns if column.ndim == 2])
 
     def output(self, weights: np.ndarray, columns: int, steps_per_second: float) -> Output:
-        """The kernel's Output, by lane where the models differ."""
+        """The kernel's Output, by lane if the models differ."""
         tables = [lane.output(weights, columns, steps_per_second) for lane in self.layouts[:1]]
         if not self.alike:
             tables += [lane.output(weights, 1, steps_per_second) for lane in self.layouts[1:]]
@@ -263,7 +264,7 @@ class _LaneLayout(ModalLayout):
         )
 
     def _stacked(self, tables, names):
-        """Return the first table, the arrays of names with an axis of lanes where models differ."""
+        """Return the first table, its named arrays with an axis of lanes if the models differ."""
         if self.alike:
             return tables[0]
         return tables[0]._replace(
@@ -275,7 +276,7 @@ class _LaneLayout(ModalLayout):
 
 
 def _own_lanes(tables, names):
-    """Return the first table, in each lane of the arrays of names that of the lane's own table."""
+    """Return the first table with the named arrays filled lane by lane from each lane's table."""
     return tables[0]._replace(
         **{
             name: np.ascontiguousarray(
@@ -320,7 +321,7 @@ class HeldRun(Run):
         return out
 
     def begin(self, initial: np.ndarray | None) -> None:
-        """Rest, against the obstacles that press; `initial` counts for nothing."""
+        """Start at rest against the obstacles that press; `initial` is ignored."""
         sensors = self.hold.channel
         for lane, (_, rest) in enumerate(self.places):
             if rest is not None:

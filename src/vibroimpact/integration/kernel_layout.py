@@ -49,7 +49,7 @@ class ModalLayout:
 
     groups: list of (mode indices, force channels) of each uncoupled group.
     implicit_shapes: for each group {RowKey: shape (mode of the group,)}, in the order of its rows.
-    drive_shapes (mode, force_channel): the model's, then, where there is a dead load, that as a
+    drive_shapes (mode, force_channel): the model's, then a dead load, if there is one, as a
         channel of constant force 1.
     force_shapes (mode, channel): drive_shapes, then the rows of the fluid-elastic force.
     padded: number of modes after padding every group to whole panels.
@@ -245,8 +245,8 @@ class ModalLayout:
         )
 
     def gaps(self, gap: np.ndarray) -> np.ndarray:
-        """Gap of each contact point, (contact_point, lane) m: the law's where it gives one, else
-        the nominal gap (lane,) m times the point's factor.
+        """Gap of each contact point, (contact_point, lane) m: the law's if it gives one, else the
+        nominal gap (lane,) m times the point's factor.
         """
         given = self.model.contact_laws.gap[:, None]
         return np.where(np.isnan(given), np.outer(self.model.gap_factor, gap), given)
@@ -295,7 +295,7 @@ class ModalLayout:
         return Hold(none, np.zeros(1, np.int64), none, np.zeros((0, 0, self.lanes)), *empty)
 
     def fluid(self, modal: Modal, cases: int, laws: Sequence[FluidLaws] = ()) -> Fluid:
-        """The kernel's Fluid of the first lanes; in the others, without stops near, it would grow.
+        """The kernel's Fluid of the first lanes; lanes without stops nearby would grow.
 
         laws: those of each case, none for the model's in all.
         """

@@ -59,7 +59,7 @@ class StepCoefficients:
 
     @staticmethod
     def _like(values: np.ndarray, f: np.ndarray) -> np.ndarray:
-        """values (..., mode) with the axes that f has behind its first."""
+        """values (..., mode) with the trailing axes of f added."""
         return values.reshape(values.shape + (1,) * (np.ndim(f) - 1))
 
 

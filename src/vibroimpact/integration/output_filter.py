@@ -1,9 +1,9 @@
 """The output filter: from the integration step to the sampling of the records, without aliasing.
 
 Two linear-phase stages. The first divides the rate by ``RATIO`` inside the integration; it only has
-to stop what would fold into the final band (images of it around the multiples of its output rate).
-The second does the rest: >= 80 dB above half the sampling frequency, ripple <= 0.05 dB below 0.78
-of it (800 Hz at 2048 Hz).
+to stop the images of the final band around the multiples of its output rate, which would fold into
+it. The second does the rest: >= 80 dB above half the sampling frequency, ripple <= 0.05 dB below
+0.78 of it (800 Hz at 2048 Hz).
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ LEAST_STAGES = 2  # decimation of the second stage at least
 PASS_FRACTION = 0.78125  # of half the sampling frequency: 800 Hz of 1024 Hz
 KAISER_ATTENUATION_DB = 100.0
 DIFFERENCE_ERROR = 1e-6  # relative, of the second derivative up to the end of the passband
-LONGEST_DIFFERENCE = 30  # order at most, even where DIFFERENCE_ERROR asks for more
+LONGEST_DIFFERENCE = 30  # order at most, even if DIFFERENCE_ERROR asks for more
 DROOP_TERMS = 5  # of the polynomial in 1 - cos that compensates the first stage's droop
 
 
@@ -70,7 +70,7 @@ def output_filter(steps_per_second: float, sampling_frequency: float) -> OutputF
     """The filter for one pair of rates [Hz].
 
     Raises ValueError when the ratio of the rates is not a multiple of RATIO, or no more than RATIO:
-    the first stage then stops what is to pass, and no second stage makes it good (6 % were left).
+    the first stage would then stop the passband, and the second can not restore it (6 % were left).
     """
     ratio = steps_per_second / sampling_frequency
     if abs(ratio / RATIO - round(ratio / RATIO)) > 1e-9 or ratio < LEAST_STAGES * RATIO - 1e-9:

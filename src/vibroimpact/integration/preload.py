@@ -1,4 +1,4 @@
-"""Bars that press a structure at rest with a given force: where they must sit for that.
+"""Positions of bars that press a structure at rest with a given force.
 
 A flat land with the normal n presses a contact point with the force P. The contact yields by
 p = P / k (or the inverse of Hertz' law), and the structure takes the displacement u at which it is
@@ -24,9 +24,9 @@ def seated(
 ) -> tuple[np.ndarray, np.ndarray | None]:
     """Return (offset (contact_point, 2, case) m, rest (mode, LANES)) of a model with preloads.
 
-    offset: that of the centres of the obstacles: the imperfection, and at the points with a preload
-        the displacement of the structure at rest as well.
-    rest: its modal amplitudes there, without constant forces; None where nothing is preloaded.
+    offset: of the centres of the obstacles: the imperfection, and at points with a preload also the
+        displacement of the structure at rest.
+    rest: its modal amplitudes there, without constant forces; None if nothing is preloaded.
 
     gap (case,), imperfection (contact_point, 2, case): m, as of integrate_batch.
     """

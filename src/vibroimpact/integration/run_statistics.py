@@ -10,7 +10,7 @@ import numpy as np
 
 from .kernels.decimation import RATIO
 
-LARGEST = ("peak", "impact_velocity_peak", "residual")  # begin names of what is no sum
+LARGEST = ("peak", "impact_velocity_peak", "residual")  # begin names of maxima, not sums
 
 
 class Counted(Protocol):
@@ -91,7 +91,7 @@ def statistics(runs: Counted, run: int, steps_per_second: float) -> dict[str, np
 
 
 def _work_of_lands(tally: dict[str, np.ndarray], duration: float) -> dict[str, np.ndarray]:
-    """Return the work rate of each land by name, nothing where no support has two lands."""
+    """Return the work rate of each land by name, nothing if no support has two lands."""
     sliding = tally["sliding_work"]
     if not tally["land_work"].size:
         return {}

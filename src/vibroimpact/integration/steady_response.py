@@ -30,8 +30,8 @@ class PeriodicDrive:
     lines (case, line): complex amplitudes from line 0, N.
     steps: time steps per period.
 
-    Raises ValueError where the kernel cannot step through it: steps that are not a multiple of
-    RATIO or fewer than twice the lines, more than LANES cases.
+    Raises ValueError if the kernel cannot step through it: steps that are not a multiple of RATIO
+    or fewer than twice the lines, more than LANES cases.
     """
 
     period: float
@@ -69,7 +69,7 @@ def steady_elements(
     """Displacement (m) and force on the structure (N) of every local element in the steady state:
     complex amplitudes (element, case, line) each.
 
-    samples: drive.samples(), where they are at hand.
+    samples: drive.samples(), if they are at hand.
     periods_before: periods before the one recorded. The start is the linear steady state without
         elements, so that few are needed.
 
@@ -95,7 +95,7 @@ def steady_series(
     a period of the steady state: (element, case, step) each, both of one instant.
 
     A law without memory is a curve in these. In amplitudes of some lines it is a loop: they lack
-    what the law does above them. Arguments and errors are those of steady_elements.
+    its higher harmonics. Arguments and errors are those of steady_elements.
     """
     samples = drive.samples() if samples is None else samples
     rate = drive.steps / drive.period
@@ -151,7 +151,7 @@ def _slider_force(model: ModalModel, displacement: np.ndarray) -> np.ndarray:
 
 
 def _with_dead_load(samples: np.ndarray, layout: ModalLayout) -> np.ndarray:
-    """The force (step, force_channel, LANES), with 1 for the dead load where the model has one."""
+    """The force (step, force_channel, LANES), with 1 for the dead load if the model has one."""
     dead_loads = layout.drive_shapes.shape[1] - 1
     ones = np.ones((len(samples), dead_loads, LANES))
     return np.ascontiguousarray(np.concatenate([samples, ones], axis=1))

@@ -1,8 +1,8 @@
 """Whether a step keeps a structure on linear springs and dampers from growing by itself.
 
-The exact step takes a mode at any frequency, but the rate of a contact or damper from displacements
-of past steps: of a mode that turns by more than about pi in a step, the rate comes out with the
-wrong sign, and a damper feeds it. Springs alone do so for a mode just below pi.
+The exact step takes a mode at any frequency, but the velocity at a contact or damper comes from
+displacements of past steps: for a mode that turns by more than about pi in a step it has the wrong
+sign, and a damper feeds the mode. Springs alone do so for a mode just below pi.
 """
 
 import numpy as np
@@ -43,14 +43,14 @@ def step_growth(model: ModalModel, dt: float, scheme: str) -> float:
                     return np.inf
                 grown = float(np.abs(np.linalg.eigvals(step)).max()) - 1.0
                 own = np.expm1(dt * max(_growth_rate(omega, damping, laws), 0.0))
-                # What grows by itself may do so a little faster in steps: by no more than twice.
+                # A motion that grows by itself may grow up to twice as fast in steps.
                 largest = max(largest, grown - 2.0 * own)
     return largest
 
 
 def fluid_feedback(model: ModalModel, dt: float, scheme: str) -> float:
-    """Return the change of the fluid-elastic forces by the motion of a step under them, at most,
-    over themselves. A step takes them from a foretold motion, see kernels.fluid.
+    """Return the largest relative change of the fluid-elastic forces by the motion of a step under
+    them. A step takes them from a predicted motion, see kernels.fluid.
     """
     laws, step = model.fluid_laws, step_coefficients(scheme, model.omega, model.damping, dt)
     drag = step.velocity_weights[0] * np.abs(laws.damping)
@@ -61,7 +61,7 @@ def fluid_feedback(model: ModalModel, dt: float, scheme: str) -> float:
 
 
 def require_stable_step(model: ModalModel, steps_per_second: float, scheme: str) -> None:
-    """Raise IntegrationError where the step makes a motion grow by itself.
+    """Raise IntegrationError if the step makes a motion grow by itself.
 
     The message has the steps per second that are enough.
     """

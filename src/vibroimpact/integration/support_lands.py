@@ -17,7 +17,7 @@ def law_lands(model: ModalModel, round_points: Sequence[int]) -> tuple[np.ndarra
     The laws are those of kernels.tables.Laws: of round_points, then one per flat land. The places
     are the lands of the first support, of the second and so on, as many for each as the support
     with most lands has; with lobes the place is that of the first land. A law without lands has
-    place -1. There are no places where no support has two lands.
+    place -1. There are no places if no support has two lands.
     """
     laws, support_of = model.contact_laws, model.support_of_point
     normals: list[list[np.ndarray]] = [[] for _ in model.support_names]

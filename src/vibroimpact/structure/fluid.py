@@ -96,7 +96,7 @@ def added_mass_coefficients(confinement: ConfigPart, section: ConfigPart) -> tup
 
 
 def equivalent_diameter_ratio(confinement: ConfigPart, section: ConfigPart) -> float:
-    """Return De/D: the diameter of the channel that confines as much, over that of the tube.
+    """Return De/D: the diameter of the equivalent channel over that of the tube.
 
     Infinite if nothing confines the fluid. Source: Pettigrew and Taylor (2003).
     """

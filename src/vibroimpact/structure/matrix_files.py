@@ -60,7 +60,7 @@ def read_matrix(path: str | Path, name: str, op4_set: str | None = None) -> spar
 
 def _real(path: Path, name: str, matrix: Any) -> sparse.csr_array:
     """Return a matrix as real numbers, sparse. Raises MatrixFileError if it is not square, holds
-    other things than finite real numbers, or refers to rows that it does not have.
+    anything but finite real numbers, or refers to rows that it does not have.
     """
     if sparse.issparse(matrix):
         _require_shape(path, name, matrix.shape)
@@ -76,7 +76,7 @@ def _real(path: Path, name: str, matrix: Any) -> sparse.csr_array:
         raise MatrixFileError(f"{path}: {name} holds no numbers: give a matrix of numbers")
     _require_shape(path, name, matrix.shape)
     values = matrix.data if sparse.issparse(matrix) else np.asarray(matrix, float)
-    if not np.all(np.abs(values) <= LARGEST):  # false for what is not a number, too
+    if not np.all(np.abs(values) <= LARGEST):  # false for NaN, too
         raise MatrixFileError(
             f"{path}: {name} holds values that are not finite or beyond {LARGEST:g}: correct them"
         )

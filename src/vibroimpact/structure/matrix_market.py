@@ -24,7 +24,7 @@ def read_matrix_market(path: str | Path, most_rows: int) -> sparse.coo_array:
     """Return the matrix (row, column) of a MatrixMarket file.
 
     most_rows: of a matrix that may be asked for. Raises ForeignFileError, and ValueError for text
-    where numbers should be.
+    in the place of numbers.
     """
     with open(path, encoding="latin-1") as file:  # every byte is a character: comments hold any
         layout, symmetric = _header(path, file.readline(200))

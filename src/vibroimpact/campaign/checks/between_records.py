@@ -21,7 +21,7 @@ from .linear_record import COHERENT, mean_coherence
 Found = Iterator[tuple[int, int | None, str]]
 
 SPIKE, FEW = 20.0, 3  # times all but a few samples
-ALONE = 0.05  # of a spike: what stands beside it
+ALONE = 0.05  # of a spike: its neighbours are smaller
 UNRELATED = 0.05  # mean coherence: the force of another record leaves 0.025, rattling 0.25 or more
 ENOUGH = 4.0  # lines on which two records both follow their force
 FOLLOWED = 0.1  # product of the coherences of a line whose gains are compared
@@ -107,7 +107,7 @@ def contradictions(measured: CampaignSignals) -> Found:
         pairs = [_Pair(found[record], found[other]) for other in found if other != record]
         if not pairs:
             continue
-        # Channels that are swapped seem reversed or scaled too; where all are reversed, many pairs
+        # Channels that are swapped seem reversed or scaled too; if all are reversed, many pairs
         # seem swapped.
         swapped = [*_swapped(measured, record, pairs)]
         turned = [*_reversed(measured, record, pairs)]
@@ -255,7 +255,7 @@ def _other_unit(measured: CampaignSignals, record: int, pairs: list[_Pair]) -> F
             yield (
                 record,
                 channel,
-                f"{measured.channels[channel]} is {np.exp(factor):.3g} times as large beside the"
+                f"{measured.channels[channel]} is {np.exp(factor):.3g} times as large relative to the"
                 f" other channels in record {name} as in {against}: another unit or gain of its"
                 " amplifier.",
             )

@@ -80,7 +80,7 @@ CHECKS = (
     "content",
 )
 NOT_CHECKED = "not checked"
-BESIDE = {"base motion": "load_rms"}  # a check of some campaigns alone, and where it stands
+BESIDE = {"base motion": "load_rms"}  # a check of some campaigns alone, and the one that it follows
 # A warning of these excludes its signal from every comparison.
 EXCLUDING_CHECKS = ("units", "gaps in time", "spikes", "clipping", "drop-outs", "record length")
 LEVELS_APART = 1.05
@@ -479,7 +479,7 @@ def _length(measured, spectra):
     low, high = float(spectra.frequency[0]), float(spectra.frequency[-1])
     durations = measured.valid_samples / measured.rate
     step = float(np.diff(spectra.frequency).min())
-    # the lowest line falls with the length of the record where the force excites all of them
+    # the lowest line falls with the length of the record if the force excites all of them
     falls = measured.stated_band is None and low < 2.5 * step
     lowest = 1.0 / SEGMENT_S if falls else low
     for name, duration in zip(measured.records, durations, strict=True):

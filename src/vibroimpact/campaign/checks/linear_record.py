@@ -90,8 +90,8 @@ def _not_delayed(
     """Return those of the channels that real modes fit better without the lag (channel,) in s.
 
     Damping that couples two modes turns the phase of a small response in proportion to frequency
-    too. The poles are those of the estimator LSCF of all channels, the residues real, beside a
-    constant flexibility and inertia; errors are relative, line by line.
+    too. The poles are those of the estimator LSCF of all channels, the residues real, with a
+    constant flexibility and inertia added; errors are relative, line by line.
     """
     order = min(LAG_ORDER, spectra.frequency.size // 4)
     if not channels or order < 2:
@@ -140,12 +140,12 @@ def swap_hints(signals: CampaignSignals, spectra: Transfer) -> list[tuple[int, i
     """Return pairs (channel along the force, channel across it or None) whose names seem swapped.
 
     A channel along the force is suspect if it is incoherent although most others along the force
-    are coherent; a contact force is not, which there is none of until the structure touches. Its
-    partner is a coherent channel across the force, the one at the same point if there is one, of
-    the same kind if there is one. Without a partner, one channel that follows tells of no other.
+    are coherent. A contact force is not: there is none until the structure touches. Its partner is
+    a coherent channel across the force, the one at the same point if there is one, of the same kind
+    if there is one. Without a partner, one channel that follows is no evidence against another.
     """
     coherence, along = mean_coherence(spectra), alignment(signals)
-    # where only the strong lines of a channel are above its noise, its mean coherence is low
+    # if only the strong lines of a channel are above its noise, its mean coherence is low
     follows = np.maximum(coherence, spectra.following)
     along = np.where(np.array(signals.kinds) == "contact_force", np.nan, along)
     following = np.sum((along > ALIGNED) & (coherence > COHERENT))

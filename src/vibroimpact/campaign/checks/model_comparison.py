@@ -18,8 +18,8 @@ from .linear_record import mean_coherence
 
 BANDS = 30
 LEAST_COHERENCE = 0.3  # least mean coherence of a channel that is judged, and of a band of it
-# Two channels are swapped where exchanging them reduces their misfit to below this share of it and
-# by at least SWAP_DB.
+# Two channels are swapped if exchanging them reduces their misfit to below this share of it and by
+# at least SWAP_DB.
 SWAP_RATIO = 0.6
 SWAP_DB = 1.0
 OPPOSITE = -0.4  # mean cosine of the phase between measured and simulated

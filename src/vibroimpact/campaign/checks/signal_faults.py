@@ -12,8 +12,8 @@ FEWEST_CRESTS = 5  # that they are of: those of one crest are no independent one
 PILE_UP = 8.0
 # The extreme value occurs SAME_VALUE times as often as any of its NEIGHBOURS next values.
 SAME_VALUE, NEIGHBOURS = 3, 20
-# A side of a signal that is smaller than this share of the other is no range of an amplifier: where
-# nothing touches, a contact force is noise of a few steps of the converter.
+# A side of a signal that is smaller than this share of the other is no range of an amplifier:
+# without contact a contact force is noise of a few steps of the converter.
 ONE_SIDED = 0.1
 DROP_OUT_S, DROP_OUT_SAMPLES = 0.01, 8  # a constant value for longer than both is a drop-out
 # So is a stretch of QUIET_S in which the RMS of the signal and of its differences falls to

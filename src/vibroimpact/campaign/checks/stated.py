@@ -15,8 +15,8 @@ from vibroimpact.campaign.force_kinds import BASE
 from vibroimpact.campaign.signals import FEWEST_SAMPLES, CampaignSignals, is_load
 
 WIDE_GAP_M, FAR_M = 0.05, 100.0  # larger ones may be in millimetres
-FILTERS = ("fir80", "none")  # what simulations pass, and no filter
-OFFSET = 0.2  # of the RMS about the mean: a larger constant part of a force is told
+FILTERS = ("fir80", "none")  # that of simulations, and none
+OFFSET = 0.2  # of the RMS about the mean: a larger constant part of a force is reported
 NO_PERIOD = 0.5  # of the force: a larger difference between two periods is that of another force
 Rows = Iterator[dict]
 

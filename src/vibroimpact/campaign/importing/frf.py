@@ -68,7 +68,7 @@ def read_frfs(path: str | Path) -> FrequencyResponses:
 
 def _ends(functions, path):
     """Return ((node, axis) of each channel, that of the force): of the responses, or of the forces
-    where those moved.
+    if those moved.
     """
     responses, forces = (
         [(int(data[f"{end}_node"]), int(data[f"{end}_dir"])) for data in functions]

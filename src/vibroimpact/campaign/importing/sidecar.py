@@ -29,7 +29,7 @@ from vibroimpact.config.yaml_file import read_yaml
 from vibroimpact.io.signal_files.signals import ImportProblem
 
 NAME = "campaign.yaml"
-# Keys of which a contradiction is told: without a wrong value there would be one too many.
+# Keys whose contradictions are reported: without a wrong value there would be one too many.
 CONTRADICTING = ("name", "file", "files", "from_s", "to_s", "variables", "support_gap_m")
 Direction = Literal["x", "y", "z", "+x", "+y", "+z", "-x", "-y", "-z"]
 DIRECTIONS = {
@@ -140,7 +140,7 @@ class Sidecar(Section):
     start_up: Literal["rest", "stationary"] = "stationary"
     period_samples: PeriodSamples = 0
     transient_periods: TransientPeriods = 0
-    forces: tuple[Drive, ...]  # none where no force was measured
+    forces: tuple[Drive, ...]  # none if no force was measured
     channels: tuple[Sensor, ...] = Field(min_length=1)
     records: tuple[Record, ...] = Field(min_length=1)
     voltage: Voltage | None = None

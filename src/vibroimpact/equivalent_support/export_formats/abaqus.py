@@ -1,6 +1,6 @@
 """Abaqus keywords: SPRING1 and DASHPOT1 elements to ground.
 
-Source: Abaqus Keywords Guide, *SPRING and *DASHPOT: the degree of freedom, then the constant. Where
+Source: Abaqus Keywords Guide, *SPRING and *DASHPOT: the degree of freedom, then the constant. If
 the directions are not global axes, ORIENTATION gives the local ones. CalculiX reads the springs;
 it has no DASHPOT1.
 """

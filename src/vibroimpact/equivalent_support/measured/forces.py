@@ -22,7 +22,7 @@ from vibroimpact.reduction.modal_model import ModalModel
 
 SMALLEST_PART = 1.0e-4  # of the variance of all forces
 PUSHED_BEYOND = 1.5  # modes up to this multiple of the highest frequency are pushed
-HIGHEST = 0.4  # of the sampling frequency, where no force says how far records are of use
+HIGHEST = 0.4  # of the sampling frequency, if no force shows how far records are of use
 # Variance of a PSD over its mean, in that of chance: above it a force is not taken as white.
 NOT_WHITE = 1.3
 SMOOTHED = np.array([0.25, 0.5, 0.25])  # over lines, no wider than the analysis window

@@ -20,11 +20,11 @@ from .forces import KnownForce
 from .sensors import direction_of, point_of
 
 HELD = 1.0e9  # N/m: a tube that its supports hold
-# References of LSCF where the model names none that was measured. More make it less stable at the
-# low orders that it is read at.
+# References of LSCF if the model names none that was measured. More make it less stable at the low
+# orders that it is read at.
 REFERENCES = 2
-# Bands where the model states none: from a part of the first frequency of the free tube to a
-# multiple of the highest main peak of all records.
+# Bands if the model states none: from a part of the first frequency of the free tube to a multiple
+# of the highest main peak of all records.
 LOW, SEARCH, LSCF, BROADBAND = 0.6, 1.4, 1.9, 3.0
 BEYOND = 1.3  # of the first frequency of the held tube: no main peak is looked for above
 
@@ -47,7 +47,8 @@ def measured_settings(
     names = [point_of(signals.channels[each], axis) for each in used]
     identification = _with_sensors(config, signals, model, names, used)
     low, high = force.band_Hz
-    # The linear tube is taken to be driven where spectra are kept: see spectra.measured_spectra.
+    # The linear tube is taken to be driven in the band of the spectra that are kept: see
+    # spectra.measured_spectra.
     band = (max(low, lowest_read_Hz(identification)), high)
     segment_s = round(config.spectra.segment_s * signals.rate) / signals.rate
     config = config.model_copy(

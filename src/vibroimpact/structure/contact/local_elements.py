@@ -34,7 +34,7 @@ def element_rows(
 ) -> np.ndarray:
     """Return (element, dof): the displacement of each element along its direction per unit dof.
 
-    The displacement is relative where an element has two ends.
+    The displacement is relative if an element has two ends.
 
     elements: entries of the configuration.
     point_rows: function of a point's name that returns its displacement rows (3, dof).

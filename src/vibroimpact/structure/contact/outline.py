@@ -11,7 +11,7 @@ import numpy as np
 from vibroimpact.config.stage_settings import ConfigPart
 
 POINTS = 361  # of a curved outline: one per degree, ends included
-OPEN = 3.0  # reach where stops leave a side open, as a multiple of the farthest stop
+OPEN = 3.0  # reach if stops leave a side open, as a multiple of the farthest stop
 
 
 def radial_gap(profile: ConfigPart, gap_m: float, angle: np.ndarray) -> np.ndarray:

@@ -174,8 +174,8 @@ LAW_COLUMNS = {
 
 
 def _gap(support: ConfigPart) -> float:
-    """Return the gap in m of a support: minus the depth that its preload takes, NaN for that of the
-    case.
+    """Return the gap in m of a support: minus the indentation by its preload, NaN for the gap of
+    the case.
     """
     if support.preload_N is None:
         return np.nan if support.gap_m is None else support.gap_m
