@@ -123,8 +123,8 @@ def _unit(directions: np.ndarray) -> np.ndarray:
 
 
 def _lowest_Hz(signals: CampaignSignals) -> float:
-    """Return the lower end in Hz of the band that the base excites, NO_BAND_HZ if no record is
-    long enough to tell it.
+    """Return the lower end in Hz of the band that the base excites, NO_BAND_HZ if no record is long
+    enough to show it.
     """
     band = transfer_band(signals)
     return NO_BAND_HZ if band is None else band[0]

@@ -1,4 +1,4 @@
-"""Diagnosis: the model held to the measurement, what it lacks, and how sure that is.
+"""Diagnosis: the model held to the measurement, the effects that it lacks, and their probability.
 
 Data flow one way: measurement -> held runs -> score -> fit of explanations -> decision ->
 verification ->

@@ -24,7 +24,7 @@ NINETY_SD = 1.645  # sigma: half width of the 90 % interval of a normal law
 
 def effect_rows(hypothesis: Hypothesis, signals: Signals) -> list[Values]:
     """Return the rows of `effects` of verdict.json: id, family, location, parameters with their 90
-    % intervals: of the fit, and of what two codes of the same structure differ by.
+    % intervals: of the fit, and of the difference between two codes.
     """
     fit = hypothesis.fit
     half = NINETY_SD * fit.deviation
@@ -66,7 +66,7 @@ def effect_rows(hypothesis: Hypothesis, signals: Signals) -> list[Values]:
 
 
 def _change(row: Coordinate, x: float) -> float:
-    """Return by how much a coordinate changes the value from where the effect is absent."""
+    """Return the change of the value by a coordinate, from its value without the effect."""
     value = row.to_value(x)
     return float(value * x) if row.log else value
 
@@ -74,7 +74,7 @@ def _change(row: Coordinate, x: float) -> float:
 def completed_model(structure: Structure, point: Point, what: str) -> str:
     """Return the YAML text of the configuration of a Point, its frequencies and damping corrected.
 
-    what: the first line, a comment. Gains are a comment: they are no part of the model.
+    what: the first line, a comment. Gains are a comment: they are not part of the model.
     """
     config = structure.configuration(structure.terms(point))
     values = config.model_dump(mode="json")
@@ -108,8 +108,8 @@ def completed_model(structure: Structure, point: Point, what: str) -> str:
 
 
 def _integration(structure: Structure, point: Point) -> Values:
-    """Return the keys of `integration` that change: none, or, where a damped contact would grow by
-    the exact step, Newmark's with the steps that the free modes need.
+    """Return the keys of `integration` that change: none, or Newmark's scheme with the steps that
+    the free modes need, if the exact step would make a damped contact grow.
     """
     config = structure.config
     own = config.integration

@@ -1,4 +1,4 @@
-"""Coordinates of what is fitted: parameters of effects, their places, and nuisances."""
+"""Coordinates of a fit: parameters of effects, their places, and nuisances."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NUISANCES = {
 }
 FARTHEST = 4.0  # sigma of a nuisance
 LEAST_DAMPING = 0.4  # of the scatter of a frequency, over it: see nuisance_coordinates
-ENDS = (0.02, 0.98)  # of a tube: nothing is looked for nearer to its ends
+ENDS = (0.02, 0.98)  # of a tube: no effect is sought nearer to its ends
 PLACE_SIZE = 0.05  # of its length
 DIRECTION_SIZE_DEG = 20.0
 STEPS = {
@@ -71,11 +71,11 @@ class Coordinate:
 def nuisance_coordinates(
     damping_ratio: np.ndarray, channels: int, turned: bool
 ) -> list[Coordinate]:
-    """Return the coordinates of the frequencies and damping of modes, of the gains and, where
+    """Return the coordinates of the frequencies and damping of modes, of the gains and, if
     `turned`, of the direction of the force.
 
-    damping_ratio (mode,): a damping whose scatter moves its mode far less than that of the
-    frequency does is left as it is.
+    damping_ratio (mode,): a damping whose scatter moves its mode far less than the scatter of the
+    frequency is not fitted.
     """
     heavy = DAMPING_SD * damping_ratio > LEAST_DAMPING * FREQUENCY_SD
     numbers = {
@@ -120,7 +120,7 @@ def _of_parameter(parameter: Parameter, number: int, index: int, unit: float) ->
 
 def _of_place(term: Term, number: int, length: float) -> list[Coordinate]:
     """Return the coordinates of the place of a term along a tube and of its direction across it,
-    none where the place has a name.
+    none if the place has a name.
     """
     if arc_length_m(term.location) is None:
         return []
@@ -149,7 +149,7 @@ def to_vector(point: Point, rows: Sequence[Coordinate]) -> np.ndarray:
 
 
 def to_point(x: np.ndarray, rows: Sequence[Coordinate], start: Point) -> Point:
-    """Return the Point at coordinates x (coordinate,); what `rows` do not hold is as in `start`."""
+    """Return the Point at coordinates x (coordinate,), with the other values as in `start`."""
     values = [list(term.values) for term in start.terms]
     places: dict[int, dict[str, float]] = {}
     nuisances = {kind: dict(enumerate(getattr(start, kind))) for kind in NUISANCES}

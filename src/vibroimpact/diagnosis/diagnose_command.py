@@ -1,4 +1,4 @@
-"""The command `vibroimpact diagnose`: its arguments, and what it prints and writes.
+"""The command `vibroimpact diagnose`: its arguments, its output and its files.
 
 The library is imported when the command runs, so that `--help` answers at once.
 """
@@ -41,7 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command. Return 1 where there is no verdict."""
+    """Run the command. Return 1 if there is no verdict."""
     from vibroimpact.config.problems import ConfigError
     from vibroimpact.io.provenance import verdict_origin
     from vibroimpact.io.records import RecordError
@@ -75,7 +75,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def summary(verdict: Verdict) -> list[str]:
-    """Return the lines that tell a verdict on a terminal."""
+    """Return a verdict as lines for a terminal."""
     from vibroimpact.diagnosis.verdict.content import not_run_sentence
 
     lines = [f"Verdict: {verdict.verdict.replace('_', ' ')}"]

@@ -1,5 +1,5 @@
-"""The evidence of a diagnosis: where the holding force acts, the law that records demand beside the
-model's, and the prediction of a sensor that is left free.
+"""The evidence of a diagnosis: the holding force by channel and band, the law that the records
+demand next to the model's, and the prediction of a sensor that is left free.
 """
 
 from collections.abc import Sequence
@@ -27,11 +27,11 @@ MOST_FREE = 96  # runs with a sensor left free, of both states
 LAW_STRETCHES = 3
 WAVEFORM_S, CYCLES = 0.25, 25  # of a waveform, at most
 FINER = 4  # times the sampling of the runs, as a waveform is drawn
-PLACES = (  # of a campaign: where its channels and forces are
+PLACES = (  # of a campaign: positions and directions of its channels and forces
     "force_channel_name",
     *(f"{role}_{key}" for role in ("channel", "force_channel") for key in ("point", "direction")),
 )
-ACTS = 0.3  # of the power of the sensors: beyond what the drive alone does
+ACTS = 0.3  # of the power of the sensors: not explained by the drive alone
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +50,7 @@ class HeldState:
 
     def holding(self) -> np.ndarray:
         """Return (stretch, channel, sample) N: the holding force with all held, as a residual of
-        what was measured.
+        the measured motion.
         """
         gain = self.chain.gain[:, None]
         force = self.records.force[: len(self.bench.stretches), : len(gain)]
@@ -69,8 +69,8 @@ class HeldState:
         return np.stack([force, motion])
 
     def left_free(self, stretch: int, channel: int) -> np.ndarray:
-        """Return (2, sample) m: the measured motion of a channel before its delay, and that of the
-        model where it was left free, as it would be measured.
+        """Return (2, sample) m: the measured motion of a channel with its delay removed, and the
+        motion of the model with it left free, as it would be measured.
         """
         measured = sampled_motion(self.bench, stretch, self.chain.delay)[channel]
         free = self.records.motion[self.free[stretch, channel], channel].astype(float)
@@ -84,7 +84,7 @@ def held_state(bench: Bench, point: Point, free: Sequence[tuple[int, int]]) -> H
     """
     model, chain = bench.structure.model(point), bench.structure.measuring(point)
     places = places_of(model)
-    # the places are further sensors, which measure nothing and are not held
+    # the places are further sensors that are not held
     count = len(places.names)
     more = ((0, count), (0, 0))
     observed = replace(
@@ -116,10 +116,10 @@ def evidence_of(comparison: Comparison, before: Point, after: Point) -> xr.Datas
     holding_force (state, stretch, channel, band): RMS in N.
     demanded_force, demanded_motion (law_stretch, place, sample) and model_force, model_motion
         (state, ..): N and m in the band; resolution (law_stretch, place) and explained, beyond
-        (law_stretch,): see law.Demand. None where the structure has no support and no element.
+        (law_stretch,): see law.Demand. Absent if the structure has no support and no element.
     free_error (state, free_stretch, channel): of a predicted velocity over its RMS.
     waveform (series, moment): of the channel `waveform_channel` in the stretch `waveform_stretch`.
-        None where fewer than two channels measure a motion.
+        Absent if fewer than two channels measure a motion.
 
     Raises ConfigError or ValueError for values that no structure can have.
     """
@@ -168,8 +168,8 @@ def _start(bench: Bench, stretch: Stretch) -> float:
 
 
 def _left_free(bench: Bench, fitted: int) -> list[tuple[int, int]]:
-    """Return [(stretch, channel)] to be left free: channels that move in the stretches of the
-    highest and the lowest load that took no part, as far as MOST_FREE runs go.
+    """Return [(stretch, channel)] to be left free: channels that move in the unfitted stretches of
+    the highest and the lowest load, up to MOST_FREE runs.
     """
     order = sorted(range(fitted, len(bench.stretches)), key=lambda at: -bench.stretches[at].load)
     held = bench.measures_motion
@@ -201,7 +201,7 @@ def _holding(bench: Bench, states: list[HeldState]) -> dict:
 
 
 def _law(comparison: Comparison, bench: Bench, states: list[HeldState], point: Point) -> dict:
-    """Return the law that is demanded, by the structure of a Point, and those of both states."""
+    """Return the law demanded by the records, on a Point's linear structure, and of both states."""
     places = states[-1].places
     if not places.names:
         return {}
@@ -228,8 +228,8 @@ def _law(comparison: Comparison, bench: Bench, states: list[HeldState], point: P
 
 
 def _acting(bench: Bench, demands: list[Demand]) -> list[int]:
-    """Return the stretches whose law is told: the lowest load at which forces act beside the drive,
-    where the law is sharpest, then a middle and the highest load; one per load.
+    """Return the stretches whose law is shown: the lowest load at which forces other than the drive
+    act, at which the law is sharpest, then a middle and the highest load; one per load.
     """
     order = sorted(range(len(demands)), key=lambda number: bench.stretches[number].load)
     first = {bench.stretches[number].record: number for number in reversed(order)}
@@ -251,7 +251,7 @@ def _modelled(band, state: HeldState, places: Places, chosen: list[int]) -> np.n
 
 
 def _free(comparison: Comparison, bench: Bench, states: list[HeldState]) -> dict:
-    """Return the errors of predicted sensors, and the waveform of a telling one."""
+    """Return the errors of predicted sensors, and the waveform of the one that improves most."""
     keys = list(states[0].free)
     if not keys:
         return {}
@@ -278,7 +278,7 @@ def _free(comparison: Comparison, bench: Bench, states: list[HeldState]) -> dict
 
 def _most_telling(error: np.ndarray, stretches: list[int]) -> tuple[int, int]:
     """Return (stretch, channel) whose prediction gains most in the stretch of the highest load; the
-    largest error where none gains. error (state, free_stretch, channel): NaN of the others.
+    largest error if none gains. error (state, free_stretch, channel): NaN for the others.
     """
     before, after = np.nan_to_num(error[0, 0]), np.nan_to_num(error[1, 0])
     gain = np.minimum(before, 2.0) - np.minimum(after, 2.0)
@@ -287,7 +287,7 @@ def _most_telling(error: np.ndarray, stretches: list[int]) -> tuple[int, int]:
 
 
 def _waveform(bench, series, told, unit, scale):
-    """Return the waveform where the response is largest: series (3, sample) in m/s."""
+    """Return the waveform around the largest response; series (3, sample): m/s."""
     rate = FINER * bench.schedule.sampling_frequency
     series = resample_poly(series, FINER, 1, axis=-1)
     crossings = np.mean(np.diff(np.signbit(series[0])))  # per sample

@@ -1,5 +1,5 @@
 """Explanations: effects at places with values, the nuisances of a measured structure, and the model
-that both make.
+with both.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ from .measurement.stretches import rates_of
 
 KEPT_MODELS = 256
 TURNED = "force_misalignment"
-SEEN = 1.0e-3  # of the largest shape at a sensor or force: what is less is not seen
+SEEN = 1.0e-3  # of the largest shape at a sensor or force: a smaller one is not seen
 # Modes are kept to so many times the sampling frequency of the records. Those above change the
 # holding force of a right model by 1 % of its power at the highest load.
 MODES_TO = 3.0
-# Arrays of a ModalModel whose first axis is the mode, beside omega and damping.
+# Arrays of a ModalModel whose first axis is the mode, other than omega and damping.
 BY_MODE = tuple(name for name in MODE_FIELDS if name not in ("omega", "damping"))
 
 
@@ -85,8 +85,8 @@ class Point:
         return [term.effect.reported for term in self.terms]
 
     def with_own_gains(self, names: Sequence[str]) -> Point:
-        """Return the Point whose named sensor gains hold all of the gain of their channels: what
-        a nuisance held of it too is the same thing. names (channel,): of the channels.
+        """Return the Point with the nuisance gain of a channel merged into its sensor_gain, if it
+        has one: the two are the same quantity. names (channel,): of the channels.
         """
         gain, terms = list(self.gain), []
         for term in self.terms:
@@ -104,10 +104,10 @@ class Point:
 
 @dataclass(frozen=True, eq=False)
 class Structure:
-    """The model as given, attached to a campaign, and what makes the models of Points.
+    """The model as given, attached to a campaign; it makes the models of Points.
 
-    scale (channel,): displacement per unit of what a channel measures. dropped: modes above what
-    the records tell.
+    scale (channel,): displacement per unit of a channel's quantity. dropped: number of modes above
+    the range of the records.
     """
 
     config: Config
@@ -138,8 +138,8 @@ class Structure:
         return [str(name) for name in self.campaign["channel_name"].values]
 
     def terms(self, point: Point) -> tuple[Term, ...]:
-        """Return the terms of a Point, and that of the turn of its force: about the same axis as
-        that of a term that turns it.
+        """Return the terms of a Point and a term for the turn of its force, about the same axis as
+        a term that turns it.
         """
         if not any(point.turn):
             return point.terms
@@ -187,7 +187,7 @@ class Structure:
         )
 
     def measuring(self, point: Point) -> Measuring:
-        """Return what the measuring chain of a Point makes of the motion."""
+        """Return the measuring chain of a Point."""
         names = self.names
         gain = np.ones(len(names)) * (np.exp(point.gain) if point.gain else 1.0)
         chain = Measuring(gain, np.zeros(len(names)))

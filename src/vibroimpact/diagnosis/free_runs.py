@@ -1,8 +1,8 @@
-"""What users know: spectra of free runs beside the measured ones, before and after a completion.
+"""Spectra of free runs against the measured ones, before and after a completion.
 
 The log-spectral distance is the RMS over bands, channels and records of the difference in dB. Its
-floor is the distance of two runs of the completed model from other starts: impacting motion is
-chaotic where it runs free.
+floor is the distance of two runs of the completed model from other starts: free impacting motion is
+chaotic.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class FreeRuns:
 
 
 def free_runs(structure: Structure, signals: Signals, after: Point | None) -> FreeRuns:
-    """Return the FreeRuns of the model as given and of a Point; None where nothing is completed."""
+    """Return the FreeRuns of the model as given and of a Point; None if nothing is completed."""
     given = _simulated(structure, signals, Point())
     completed = given if after is None else _simulated(structure, signals, after)
     spectra = [_psd(values, signals) for values in (signals.response[:, None], given, completed)]
@@ -66,7 +66,7 @@ def with_after(
     after: Point,
     records: Sequence[int] | None = None,
 ) -> FreeRuns:
-    """Return FreeRuns with another Point after completion; on some records alone where given."""
+    """Return FreeRuns with another Point after completion; on some records only if given."""
     values = _simulated(structure, signals, after, records)
     return replace(runs, after=_psd(values, signals)[1])
 
@@ -82,8 +82,8 @@ def surely_off(
     are from one another, the farthest first; after: its Point.
 
     Whether a tube whirls may be chance. A record that is off some runs is compared with
-    CHANCE_RUNS of them: where the model whirls with any probability, and the measurement does not
-    (or the reverse), all of them differ from it in 2 % of the records at most.
+    CHANCE_RUNS of them: if the model whirls with any probability, and the measurement does not (or
+    the reverse), all of them differ from it in 2 % of the records at most.
     """
     beyond = _beyond_chance(runs, signals)
     off = [int(record) for record in records if beyond[record] > FREE_EXCESS_DB]
@@ -96,8 +96,8 @@ def surely_off(
 
 
 def _beyond_chance(runs, signals):
-    """Return (record,) dB: by how much farther the measured spectra of a record are from the mean
-    of the runs after completion than the farthest of these runs is from that of the others.
+    """Return (record,) dB: distance of the measured spectra of a record from the mean of the runs
+    after completion, less the largest distance of one of these runs from the mean of the others.
     """
     cells = _in_bands(runs, signals)
     out = np.full(len(runs.measured), -np.inf)
@@ -196,7 +196,7 @@ def _in_bands(runs, signals):
         mean = np.stack([psd[..., low:high].mean(axis=-1) for low, high in bands], axis=-1)
         return 10.0 * np.log10(np.maximum(mean, np.finfo(float).tiny))
 
-    sensed = runs.noise[:, None]  # the sensors would add it to what is simulated
+    sensed = runs.noise[:, None]  # the sensors would add it to the simulated response
     out = {
         "measured": power(runs.measured),
         "before": power(runs.before + sensed),

@@ -6,8 +6,8 @@ the modes,
 
     y = S H (b F + C' f) + noise,      r = C H (b F + C' f),
 
-f has a Gaussian prior whose variance in each band is the most probable one; r is the motion where f
-acts. Where few sensors know of a force, its prior keeps it small: `resolution` says so.
+f has a Gaussian prior whose variance in each band is the most probable one; r is the motion at the
+points of f. If few sensors know of a force, its prior keeps it small: see `resolution`.
 
 Source: evidence of a linear model, D.J.C. MacKay, Neural Computation 4 (1992) 415-447, eq. 4.9;
 impact forces from remote sensors, M. De Araújo, J. Antunes, P. Piteau, J. Sound Vib. 215 (1998)
@@ -31,7 +31,7 @@ from .explanations import Point
 from .measurement.sensed_motion import across, of_modes, orders
 from .measurement.stretches import FADE_S, Stretch, stretches_of, valid_samples
 
-MARGIN_S, TAPER_S = 2.0, 1.0  # beside a stretch, and of it faded
+MARGIN_S, TAPER_S = 2.0, 1.0  # on either side of a stretch, and faded of it
 BANDS = 12  # logarithmic, each with a variance of its own
 PASSES = 12  # of the variances
 LEAST_POWER = 1.0e-12  # of the largest: of the prior of a force
@@ -41,7 +41,7 @@ SEEN = 0.7  # resolution from which a force is known
 
 @dataclass(frozen=True, eq=False)
 class Places:
-    """Where unknown forces act: two resultants per support, and one along each local element.
+    """The unknown forces: two resultants per support, and one along each local element.
 
     names, owners (place,): "left, y" and "left". shapes (mode, place): of a unit force that acts
     equally on the contact points of its support.
@@ -53,10 +53,10 @@ class Places:
 
 
 class Demand(NamedTuple):
-    """What the sensors demand, in the band.
+    """The forces and motions that the sensors demand, in the band.
 
     force, motion (place, sample or line): N on the structure, and m.
-    resolution (place,): share of each force that the sensors know, 0 where only its prior does.
+    resolution (place,): share of each force that the sensors determine, 0 if only its prior does.
     explained: share of the power, which the linear model leaves, that the forces explain.
     beyond: that power, over the power of the sensors.
     """
@@ -82,7 +82,7 @@ def places_of(model: ModalModel) -> Places:
 
 
 def _axis(number, vector):
-    """Return x, y or z for a vector along it, else which direction of the two it is."""
+    """Return x, y or z for a vector along it, else "direction 1" or "direction 2"."""
     along = int(np.argmax(np.abs(vector)))
     return "xyz"[along] if abs(vector[along]) > 0.99 else f"direction {number + 1}"
 
@@ -103,7 +103,7 @@ def demanded(
     """Return the Demand at frequency (line,) in Hz.
 
     lines: (drive (force_channel, line) N, sensors (sensor, line) m).
-    variance (sensor, line): of noise and model, m²; infinite of a sensor that tells nothing.
+    variance (sensor, line): of noise and model, m²; infinite for a sensor without information.
     """
     drive, sensors = lines
     own = receptances(model, frequency)
@@ -127,7 +127,7 @@ def demanded(
 
 def _most_probable(normal, pull, frequency):
     """Return (force, known, variance) (line, place): forces with the most probable variances by
-    band, and how much of each the sensors know where all have the largest variance of the band.
+    band, and the share of each that the sensors know if all have the largest variance.
 
     normal (line, place, place), pull (line, place): of the whitened least squares.
     """
@@ -160,8 +160,8 @@ def _most_probable(normal, pull, frequency):
 
 
 def demand_of(comparison: Comparison, bench: Bench, stretch: Stretch, point: Point) -> Demand:
-    """Return the Demand of a stretch of a Bench, of its settled samples, by the linear structure of
-    a Point.
+    """Return the Demand on the linear structure of a Point by the settled samples of a stretch of a
+    Bench.
     """
     structure, rates, band = comparison.structure, comparison.rates, comparison.band
     model, chain = structure.model(point), structure.measuring(point)
@@ -192,7 +192,7 @@ def demand_of(comparison: Comparison, bench: Bench, stretch: Stretch, point: Poi
 
 
 def _window(comparison, bench, stretch):
-    """Return (first, last): samples of a stretch with margins, where its record has them."""
+    """Return (first, last): samples of a stretch with margins, as far as its record has them."""
     sampling = comparison.rates.sampling
     whole = valid_samples(comparison.signals, stretch.record) / comparison.signals.rate
     end = min(stretch.start_s + bench.schedule.duration + MARGIN_S, whole - FADE_S)
@@ -200,7 +200,7 @@ def _window(comparison, bench, stretch):
 
 
 def _variance(comparison, frequency, motion, weight):
-    """Return (sensor, line) m²: of noise, and of what a model is off by; infinite where a channel
+    """Return (sensor, line) m²: of noise and of the model error; infinite for a channel that
     measures no motion. weight: the sum of the squares of the window.
     """
     signals, rates = comparison.signals, comparison.rates

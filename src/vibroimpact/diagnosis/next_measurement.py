@@ -1,8 +1,8 @@
-"""What to measure next where two effects explain a campaign equally well."""
+"""The next measurement if two effects explain a campaign equally well."""
 
 from collections.abc import Collection, Iterable
 
-# Two ids, and what tells them apart.
+# Two ids, and the measurement that separates them.
 SENTENCES = """
 gap sensor_gain
 Measure the clearance by itself (feeler gauge or shims), or calibrate the force and one response

@@ -1,8 +1,8 @@
-"""What the records demand of a support that gives way: mass, stiffness and damping of its plate.
+"""Start values of a support that gives way: the plate's mass, stiffness and damping by the records.
 
-A plate moves as no sensor sees, so a model with a wrong one is not held: its basin is a few percent
-of its frequency wide. The demanded force f and motion r at a support (see law) tell it without a
-run. While they touch,
+No sensor sees the motion of a plate, so a model with a wrong one is not held: its basin is a few
+percent of its frequency wide. The demanded force f and motion r at a support (see law) give the
+plate without a run. In contact,
 
     sign r = gap + |f| / contact stiffness + sign p,      p = H f / mass,
 
@@ -25,17 +25,17 @@ from .law import SEEN, Demand, demand_of, places_of
 FREQUENCIES, DAMPING_RATIOS = 100, (0.02, 0.06, 0.15)  # tried
 RANGE = (0.3, 30.0)  # of the first frequency of the structure
 TOUCHING = 2.0  # of the RMS of a force, from which it is one of contact
-LEAST_FORCE = 0.1  # of the largest: its law can be told
-TOLD = 0.85  # of what a rigid support leaves, and a plate must leave less
+LEAST_FORCE = 0.1  # of the largest: its law can be fitted
+TOLD = 0.85  # of the residual of a rigid support: a plate must leave less
 MOST_MASS = 3.0  # of the modal mass of the structure
 AROUND = tuple(product((0.98, 1.0, 1.02), (1.0, 0.5)))  # frequency and damping that were found
 
 
 def plate_terms(comparison: Comparison, bench: Bench, point: Point) -> list[Term]:
-    """Return plate_flexibility of each support whose motion it explains better than a rigid one,
-    and of all supports with the plate of each.
+    """Return plate_flexibility of each support whose motion a plate explains better than a rigid
+    support, and of all supports with that plate.
 
-    bench: of stretches in contact. Raises ConfigError or ValueError where the Point makes no model.
+    bench: of stretches in contact. Raises ConfigError or ValueError if the Point makes no model.
     """
     model = comparison.structure.model(point)
     if not model.support_names:
@@ -72,7 +72,7 @@ def plate_of(
     rows: Sequence[tuple[np.ndarray, np.ndarray]], rate: float, first: float
 ) -> tuple[float, float, float] | None:
     """Return (mass in kg, frequency in Hz, damping ratio) of a plate under the forces of rows, None
-    where a rigid support explains them as well. first: frequency of the structure, Hz.
+    if a rigid support explains them as well. first: frequency of the structure, Hz.
     """
     if not rows:
         return None
@@ -96,7 +96,7 @@ def plate_of(
 
 
 def _left(rows, rate, frequency, ratio):
-    """Return (RMS in m of what a plate leaves of the motion in contact, one over its mass)."""
+    """Return (RMS in m of the residual motion in contact with a plate, one over its mass)."""
     matrix, motion = [], []
     for number, (force, moved) in enumerate(rows):
         touching = np.abs(force) > TOUCHING * force.std()

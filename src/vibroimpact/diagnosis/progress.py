@@ -1,4 +1,4 @@
-"""What is known while a diagnosis goes on."""
+"""The progress of a diagnosis."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any, TextIO
 from vibroimpact.diagnosis.run_cost import SIMULATED
 from vibroimpact.io.records import write_text
 
-# Runs for each effect that is looked for at once, over those before the first line of progress:
+# Runs for each effect that is sought at once, over those before the first line of progress:
 # 4.0 to 5.8 on campaigns of the default tube.
 PER_EFFECT = 5.0
 WIDTH = 24  # characters of the bar
@@ -35,8 +35,8 @@ class SoFar:
 class ProgressBar:
     """A bar with the time left in the last line of a terminal, and lines of progress above it.
 
-    stream: where a terminal is, else the lines are printed alone. effects: that are looked for at
-    once. now: clock in s.
+    stream: a terminal; otherwise only the lines are printed. effects: number sought at once. now:
+    clock in s.
     """
 
     def __init__(self, stream: TextIO, effects: int, now: Callable[[], float] = time.monotonic):

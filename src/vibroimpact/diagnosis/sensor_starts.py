@@ -1,4 +1,4 @@
-"""What the other sensors tell of one that is left free: its gain and its delay."""
+"""Gain and delay of a sensor that is left free, from the prediction by the others."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ def sensor_terms(bench: Bench, point: Point) -> list[Term]:
     """Return a sensor_delay and a sensor_gain of each channel that the others predict, on the first
     stretch of a Bench.
 
-    The derivative at no delay leads to a small one alone; the lag of the largest correlation is
-    that of any. Raises ConfigError or ValueError where the Point makes no model.
+    The derivative at zero delay finds only a small one; the lag of the largest correlation finds
+    any. Raises ConfigError or ValueError if the Point makes no model.
     """
     stretch = bench.stretches[0]
     names = bench.structure.names

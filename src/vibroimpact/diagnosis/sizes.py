@@ -72,8 +72,8 @@ def _flexibility(model, shapes, elastic, otherwise=0.0):
 
 
 def _motion_of_drive(model, highest, rate):
-    """Return (m, m/s), the RMS displacement and speed where the first force acts, from the sensor
-    that moves most.
+    """Return (m, m/s), the RMS displacement and speed at the first force, from the sensor that
+    moves most.
     """
     moved = highest.motion.std(axis=0)
     sensor = int(np.argmax(moved))

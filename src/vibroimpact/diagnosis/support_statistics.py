@@ -23,7 +23,7 @@ from .whole_records import Held, Holder
 
 LEVEL = 0.999  # share of the time for which a force is below its level
 CONFIDENCE = 0.90  # of the intervals
-SEEN = 0.5  # least share of the motion at a support that is of modes which move a sensor
+SEEN = 0.5  # least share of the motion at a support that is in modes which move a sensor
 STILL = 1e-3  # of the mean of a sensor's squared shape: it does not move in that mode
 
 FROM_TALLY = ("rms_force", "peak_force", "contact_fraction", "impact_rate", "wear_work_rate")
@@ -34,7 +34,7 @@ Key = tuple[int, str, str]  # support, force channel ("": the resultant), quanti
 class ForceChannel:
     """A channel that measures the force of a support on the structure.
 
-    support: its index. weights (2,): of its two resultants in what is measured.
+    support: its index. weights (2,): of its two resultants in the measured force.
     records: of each record (sample,) N.
     """
 
@@ -155,7 +155,7 @@ def with_interval(
     """Return {key: (value, low, high)} of an estimate from stretches.
 
     Source: the block jackknife, H. Kuensch, Ann. Statist. 17 (1989) 1217, blocks side by side, with
-    Student's t. It does not hold for a largest value, which has no interval.
+    Student's t. It is not valid for a maximum, which has no interval.
     """
     count = len(stretches)
     parts = [estimate(np.delete(stretches, k)) for k in range(count)] if count > 1 else []
@@ -170,11 +170,11 @@ def with_interval(
 
 
 def agreement_of(record: HeldTwice, chosen: np.ndarray) -> np.ndarray:
-    """Return (support,) the correlation of the contact forces under two strengths of the dampers,
-    1 where neither touches.
+    """Return (support,) the correlation of the contact forces under two strengths of the dampers, 1
+    if neither touches.
 
-    Measured: where it is below 0.95, the correlation with the true force is about as low; above, it
-    does not see what is wrong in the model. See docs/virtual_supports.md.
+    Measured: if it is below 0.95, the correlation with the true force is about as low; above, it
+    does not show errors of the model. See docs/virtual_supports.md.
     """
     one, other = (
         held.runs.support_force[chosen].astype(float).transpose(1, 0, 2)

@@ -60,9 +60,9 @@ class SupportValue:
 
     load: RMS of the force in load_unit. gap_m: nominal gap, m. channel: a measured contact force
     that the quantity belongs to, "" for the resultant on the structure.
-    value, low, high: in unit; low and high bound 90 % of what other stretches as long as the record
-    would give, NaN where that is not known. measured: the same of the measured contact force, else
-    NaN. remark: why the value can not be relied on, else "".
+    value, low, high: in unit; low and high bound 90 % of the values of other stretches as long as
+    the record, NaN if not known. measured: the same for the measured contact force, else NaN.
+    remark: why the value is not reliable, else "".
     """
 
     record: str
@@ -98,7 +98,7 @@ class SupportForces:
 
 @dataclass(frozen=True, eq=False)
 class VirtualSupports:
-    """What remote sensors tell of the supports: values, forces where asked for, and notes."""
+    """Contact forces at supports from remote sensors: values, forces if asked for, and notes."""
 
     values: tuple[SupportValue, ...]
     forces: tuple[SupportForces, ...]
@@ -113,11 +113,11 @@ def virtual_supports(
     Per support: contact force (RMS and peak of every step; level below which it is for 99.9 % of
     the time, in the band of the records), share of time in contact, impacts per second, wear work
     rate, secant stiffness and damping by direction. Definitions are those of a study's statistics.
-    Measured contact forces are not used; they stand beside the virtual ones along their channels.
+    Measured contact forces are not used, only reported next to the virtual ones.
 
     config: of the model. calibrate: fit its frequencies and damping, and the gains, first.
-    with_forces: also give the forces over time. Raises CampaignError where the campaign can not be
-    compared with the model, with sentences that say why, one a line.
+    with_forces: also give the forces over time. Raises CampaignError if the campaign can not be
+    compared with the model, with the reasons, one a line.
     """
     held, notes = _held_channels(campaign, config)
     own = campaign.isel(channel=held)
@@ -145,7 +145,7 @@ def virtual_supports(
 
 
 def _held_channels(campaign, config):
-    """Return (indices of the channels that are held, sentences on what is left out)."""
+    """Return (indices of the channels that are held, sentences on the others)."""
     problems = comparison_problems(config, campaign)
     if not config.supports:
         problems.append(
@@ -216,7 +216,7 @@ def _forces(holding, run) -> SupportForces:
 
 
 def _values(record: HeldTwice) -> Iterator[SupportValue]:
-    """Yield the SupportValues of a record, none where all of its stretches diverged."""
+    """Yield the SupportValues of a record, none if all of its stretches diverged."""
     signals, number = record.holder.signals, record.run.record
     supports = record.holder.model.support_names
     force = record.run.runs.support_force
@@ -246,7 +246,7 @@ def _values(record: HeldTwice) -> Iterator[SupportValue]:
 
 
 def _remark(quantity, agreement, unseen):
-    """Return why a quantity can not be relied on, "" where it can; unseen: directions there."""
+    """Return why a quantity is not reliable, "" if it is; unseen: directions there."""
     if agreement < AGREEMENT:
         return f"not held: forces under two strengths agree to {agreement:.2f}"
     along = quantity.rsplit("_", 1)[-1]

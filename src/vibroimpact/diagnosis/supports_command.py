@@ -1,4 +1,4 @@
-"""The command `vibroimpact supports`: its arguments, and what it prints and writes.
+"""The command `vibroimpact supports`: its arguments, its output and its files.
 
 The library is imported when the command runs, so that `--help` answers at once.
 """
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 MODEL = "config/study.yaml"
 HEADER = ("support", "quantity", "value", "90 % interval", "measured", "")
-# What a quantity is called, and its unit as shown; of a secant value the direction follows.
+# Name of a quantity, and its unit as shown; the direction of a secant value follows.
 SHOWN = {
     "rms_force": ("contact force, RMS", "N"),
     "force_level": ("contact force, 99.9 % level", "N"),
@@ -55,7 +55,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command. Return 1 where there is no answer."""
+    """Run the command. Return 1 if there is no answer."""
     from vibroimpact.campaign.file import CampaignError
     from vibroimpact.config.problems import ConfigError
     from vibroimpact.config.reading import load_config
@@ -90,7 +90,7 @@ def _tell(path: str, lines: Iterable[str]) -> None:
 
 
 def _campaign(path: str) -> xr.Dataset:
-    """Return what can be used of a campaign, and tell what can not. Raises CampaignError."""
+    """Return the usable part of a campaign, and report the rest. Raises CampaignError."""
     from vibroimpact.campaign.checks import file_checks
     from vibroimpact.campaign.file import CampaignError
 

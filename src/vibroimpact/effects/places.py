@@ -82,8 +82,8 @@ def masses_and_springs(values: Values) -> list[str]:
 
 
 def stops(values: Values) -> list[str]:
-    """Return the named points at which a stop may be: of a structure that is no tube none if
-    the force acts along z, across which supports at named points act.
+    """Return the named points at which a stop may be; none on a structure other than a tube if the
+    force acts along z, since supports at named points act across z.
     """
     if values["structure"]["kind"] not in TUBES:
         direction = unit_vector(values["excitation"]["direction"])

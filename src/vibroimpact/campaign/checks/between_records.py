@@ -255,8 +255,8 @@ def _other_unit(measured: CampaignSignals, record: int, pairs: list[_Pair]) -> F
             yield (
                 record,
                 channel,
-                f"{measured.channels[channel]} is {np.exp(factor):.3g} times as large relative to the"
-                f" other channels in record {name} as in {against}: another unit or gain of its"
+                f"{measured.channels[channel]} is {np.exp(factor):.3g} times as large relative to"
+                f" the other channels in record {name} as in {against}: another unit or gain of its"
                 " amplifier.",
             )
 

@@ -1,7 +1,7 @@
-"""What is shown of a diagnosis without a model: spectra of the steady response, where forces are
-missing, the law that the records demand, and the error of the free response.
+"""The evidence of a diagnosis without a model: spectra of the steady response, places of missing
+forces, the law that the records demand, and the error of the free response.
 
-Of linear modes a held run has a closed form, and so have the forces that the sensors demand.
+For linear modes held runs and the forces that the sensors demand have a closed form.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ SHOWN = 200  # samples of a waveform
 def steady_lines(trial: Trial, records: Records) -> list[np.ndarray]:
     """Return [(channel, line)] of the excited lines of every level.
 
-    Raises ValueError where the model has no bounded motion at some level.
+    Raises ValueError if the model has no bounded motion at some level.
     """
     lines = records.predict(trial, PERIODS_BEFORE)
     if lines is None:
@@ -101,8 +101,8 @@ def evidence_of(
     """Return the evidence for two Trials, the modes of the lowest level and the completed model;
     variables as those of diagnosis.evidence.evidence_of.
 
-    free_error and waveform are of the free response: no sensor is held. Where the response is no
-    motion (mechanical False), what has units of mechanics is left out.
+    free_error and waveform are of the free response: no sensor is held. If the response is no
+    motion (mechanical False), quantities with mechanical units are left out.
     """
     held = np.array([level.split == "holdout" for level in records.levels])
     rows = [(level.name, level.split, level.load_rms) for level in records.levels]
@@ -158,8 +158,8 @@ def _holding(levels: Sequence[_Level], modes: IdentifiedModes) -> dict[str, Any]
 
 
 def _law(levels: Sequence[_Level], records: Records, after: Trial) -> dict[str, Any]:
-    """Return the force against the motion at each place that channels show, as the sensors demand
-    it of the completed modes and as the added laws have it; the modes as given have no element.
+    """Return the force against the motion at each place that channels show: as the sensors demand
+    it of the completed modes, and by the added laws; the modes as given have no element.
     """
     terms = {term.place: term for term in after.terms if term.participation is None}
     if not terms:
@@ -206,8 +206,8 @@ def _demanded(
     """Return (force (place, line), motion (place, line), share of the force that is known (place,))
     of a level: least squares per line, a force at a hidden place among them.
 
-    miss (channel,): relative error of linear modes where no law acts, at the lowest level; what it
-    makes of the force is not known.
+    miss (channel,): relative error of linear modes at the lowest level, without laws; the part of
+    the force that it causes is not known.
     """
     modes, hidden = after.modes, [term for term in after.terms if term.place not in terms]
     columns = np.stack([own.along(modes) for own in (*terms.values(), *hidden[:1])], axis=1)
@@ -223,7 +223,7 @@ def _demanded(
 
 def _free(levels: Sequence[_Level], held: np.ndarray) -> dict[str, Any]:
     """Return the errors of the free response, the highest held-out level first, and the waveform of
-    the channel that gains most there, as velocities.
+    the channel that improves most there, as velocities.
     """
     order = sorted(range(len(levels)), key=lambda at: (not held[at], -at))
     error = np.array(

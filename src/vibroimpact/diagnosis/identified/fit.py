@@ -1,4 +1,4 @@
-"""Least squares of a Trial on its records, and the intervals of what is told of its laws."""
+"""Least squares of a Trial on its records, and the intervals of the values of its laws."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ PARTICIPATION_RIDGE = 0.003
 STEP = 1.0e-3  # of differences
 FREQUENCY_STEP = 2.0e-5
 LARGEST = 30.0  # logarithm of a positive value over its start
-SMALL = 1.0e-4  # step of derivatives of what is told
+SMALL = 1.0e-4  # step of derivatives of the reported values
 
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
-    """A Trial at the end of its fit, named point as that of any fit is."""
+    """A Trial at the end of its fit; called `point` as in every fit."""
 
     point: Trial
     fit: TrialFit
@@ -34,19 +34,19 @@ class Fitted:
 
     @property
     def cost(self) -> float:
-        """Return the sum of squares, ridges among them."""
+        """Return the sum of squares, with the ridges."""
         return self.minimum.cost
 
 
 class TrialFit:
     """The relative error of every channel and level as a function of values, with ridges that hold
-    what is not seen.
+    unseen values.
 
     begin (value,): at the start: those of the modes (modal_fit.pack), then for each term its free
-    participation and its law's values over their start (logarithms where positive), then the offset
-    of every level where the mean counts. steps (value,): of differences. held (2, value of a term):
+    participation and its law's values over their start (logarithms if positive), then the offset of
+    every level if the mean counts. steps (value,): of differences. held (2, value of a term):
     ridge, and the size of the value. places [(participation, law)]: the slices of each term; the
-    former may be empty. Raises ValueError where the start has no bounded motion.
+    former may be empty. Raises ValueError if the start has no bounded motion.
     """
 
     def __init__(self, start: Trial, records: Records):
@@ -97,7 +97,7 @@ class TrialFit:
 
     def error(self, values: np.ndarray) -> np.ndarray | None:
         """Return (residual,): relative errors, real and imaginary, then ridges of the modes, of
-        participations and of positive values; None where there is no bounded motion.
+        participations and of positive values; None if there is no bounded motion.
         """
         predicted = self.records.predict(self.trial(values))
         if predicted is None:
@@ -110,7 +110,7 @@ class TrialFit:
 
 
 def fitted(start: Trial, records: Records, passes: int) -> Fitted:
-    """Return the Fitted of a Trial from a start, after at most so many passes.
+    """Return the Fitted of a Trial from a start, after at most `passes` passes.
 
     Raises ValueError where the start has no bounded motion.
     """
@@ -120,11 +120,11 @@ def fitted(start: Trial, records: Records, passes: int) -> Fitted:
 
 
 def estimates(own: Fitted) -> list[dict[str, dict[str, Any]]]:
-    """Return [{name: {value, unit, low, high}}] per term: what is told of its law, with 90 %
+    """Return [{name: {value, unit, low, high}}] per term: the values of its law, with 90 %
     intervals by the delta method.
 
-    The error is distortion that the model does not follow, and not the noise of the records: as in
-    any diagnosis a share INDEPENDENT of the lines counts.
+    The error is distortion that the model does not follow, not noise of the records: as in any
+    diagnosis a share INDEPENDENT of the lines counts.
     """
     slope, values = own.minimum.slope, own.minimum.values
     counted = max(INDEPENDENT * own.minimum.error.size, 1.0)

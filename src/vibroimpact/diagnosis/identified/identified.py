@@ -1,4 +1,4 @@
-"""A campaign whose structure is identified from its own records: what a diagnosis asks of it."""
+"""A campaign whose structure is identified from its own records, as a diagnosis needs it."""
 
 from __future__ import annotations
 
@@ -43,10 +43,10 @@ PREDICTION = ("level", "split", "channel", "error_linear", "error_refitted", "er
 
 @dataclass(frozen=True, eq=False)
 class Identified:
-    """A campaign by its levels, in ascending load, and what was identified from it.
+    """A campaign by its levels, in ascending load, and the models identified from it.
 
-    campaign: what of it is usable. everything: Records of all levels. units: of generic channels,
-    see stated.own_units.
+    campaign: its usable part. everything: Records of all levels. units: of generic channels, see
+    stated.own_units.
     """
 
     campaign: xr.Dataset
@@ -67,13 +67,13 @@ class Identified:
 
     @property
     def fitted_levels(self) -> list[LevelLines]:
-        """Return the levels that are fitted once a name stands."""
+        """Return the levels that are fitted once the laws are chosen."""
         return [level for level in self.everything.levels if level.split == "fit"]
 
     def completed(self, decision: Decision, rows: Rows) -> Decision:
         """Return the Decision with its best hypothesis fitted to all fitted levels.
 
-        Raises Refused where it has no bounded motion at some level.
+        Raises Refused if it has no bounded motion at some level.
         """
         (best, chance), *others = decision.ranked
         records = replace(self.setting.fitted, levels=self.fitted_levels)
@@ -88,7 +88,7 @@ class Identified:
 
     def states(self, chosen: Hypothesis | None) -> tuple[Trial, Trial]:
         """Return the model before and after: the modes of the lowest level, and the completed one;
-        chosen: None where nothing is completed.
+        chosen: None if nothing is completed.
         """
         given = Trial(self.linear.base)
         return given, given if chosen is None else cast(Trial, chosen.point)
@@ -151,9 +151,7 @@ class Identified:
 
 
 def _number(name: str) -> int | float | str:
-    """Return the number in a level's name: 3 of level 3, 100 of 100 mV; the name where it has
-    none.
-    """
+    """Return the number in a level's name: 3 of level 3, 100 of 100 mV; the name if it has none."""
     numbers = [float(word) for word in name.split() if word.replace(".", "", 1).isdigit()]
     return name if not numbers else int(numbers[0]) if numbers[0].is_integer() else numbers[0]
 
@@ -163,8 +161,8 @@ def identified(
 ) -> tuple[Identified, Rows]:
     """Return (Identified, rows of all checks) of a campaign Dataset or the path of its file.
 
-    Raises Refused with the sentence why no law can be told, ConfigError for channels and places
-    that are stated and not there, and for a mean that the channel at the force does not show.
+    Raises Refused with the reason why no law can be identified, ConfigError for stated channels and
+    places that do not exist, and for a mean that the channel at the force does not show.
     """
     usable, rows, measured = usable_records(campaign)
     check_names(stated, usable)
@@ -224,7 +222,7 @@ def _setting(
         return LocalTerm(law, place, row, location=location(place, own))
 
     def terms(stated: Sequence[str]) -> list[LocalTerm]:
-        """Return those that can act: a law where no mode moves has no size to start from."""
+        """Return those that can act: without modal motion at its place a law has no start value."""
         return [own for own in map(term, stated) if own.row is None or own.place in ranking]
 
     return Setting(

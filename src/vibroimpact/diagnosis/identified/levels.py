@@ -1,13 +1,13 @@
-"""A campaign's records by their lines, in ascending load, and which of them name a law.
+"""A campaign's records by their lines, in ascending load, and the levels that choose the laws.
 
-Records without period: of a record of finite length Y = G F + T + noise at its lines, F and Y the
-transforms of force and response, G the response per force and T what motion before the record and
-motion left at its end add: as smooth a function of frequency as G. Both are fitted as polynomials
-over a few lines on either side and T is taken away: Y - T is the response to the force repeated for
-ever, and the record is one period of it. Once modes are known T is fitted again, as the free decay
-of these modes over the whole band, which a few lines at a sharp resonance do not tell. Source:
+Records without period: at the lines of a record of finite length Y = G F + T + noise, with F and Y
+the transforms of force and response, G the response per force and T the transient by the motion at
+the start and the end of the record, as smooth a function of frequency as G. Both are fitted as
+polynomials over a few lines on either side and T is subtracted: Y - T is the response to the force
+repeated for ever, and the record is one period of it. Once modes are known T is fitted again as
+their free decay over the whole band: at a sharp resonance a few lines do not determine it. Source:
 Pintelon, Schoukens, System Identification, 2nd ed. 2012, section 7.2 (local polynomial method).
-Departure: a response that is not linear has a transient that the force decides as well; it stays as
+Departure: the transient of a nonlinear response depends on the force as well; it stays as
 distortion, the smaller the longer the record is.
 """
 
@@ -26,12 +26,12 @@ from vibroimpact.identify.spectra.periodic_lines import LevelLines, level_lines,
 from vibroimpact.reduction.modal_structure import IdentifiedModes
 
 SAME_LOAD = 1.05  # records within this factor repeat one level
-FEWEST_FITTED = 3  # fewer fitted levels leave none to try a name on
+FEWEST_FITTED = 3  # with fewer fitted levels none is left to choose a law on
 # Share of the response that noise may have without a warning: of the mean over periods, and of a
 # record without period, where distortion counts as noise.
 NOISY, LOUD = 0.05, 0.5
 HALF_WIDTH, ORDER = 4, 2  # lines on either side; degree of both polynomials
-END_TERMS = 3  # of the polynomial in s that the ends of a record add to the free decay
+END_TERMS = 3  # of the polynomial in s by the ends of a record, added to the free decay
 FEWEST_SAMPLES = 8 * (2 * HALF_WIDTH + 1)  # of a record without period
 
 
@@ -43,8 +43,8 @@ def levels_of(
     """Return the LevelLines of a campaign in ascending load, in SI or a generic channel's units.
 
     modes {record: modes}, band_Hz: for the transient of records without period, see
-    long_record_lines; records have none where the attribute whole_records says so. Raises
-    PeriodError for any other record without one.
+    long_record_lines; records have none if the attribute whole_records is set. Raises PeriodError
+    for any other record without one.
     """
     signals, out = campaign_signals(campaign).require_units(), []
     whole = int(campaign.attrs.get("whole_records", 0))
@@ -63,12 +63,12 @@ def levels_of(
 def naming_split(
     levels: Sequence[LevelLines],
 ) -> tuple[tuple[LevelLines, ...], tuple[LevelLines, ...]]:
-    """Return (fitted, tried): the levels that candidates are fitted to, and those that their names
-    are tried on.
+    """Return (fitted, tried): the levels that candidates are fitted to, and those that choose
+    between them.
 
-    The fitted level below the highest one, with all records of its load, is set aside for the name
-    and is fitted once the name stands: held-out levels choose nothing. Where only two levels are
-    fitted, the held-out ones are tried. Raises ValueError where there are too few.
+    The fitted level below the highest one, with all records of its load, is set aside for the
+    choice of laws and is fitted after it: held-out levels choose nothing. If only two levels are
+    fitted, the held-out ones choose. Raises ValueError if there are too few.
     """
     fitted = tuple(level for level in levels if level.split == "fit")
     held = tuple(level for level in levels if level.split != "fit")
@@ -101,7 +101,7 @@ def noise_share(level: LevelLines, band_Hz: Sequence[float]) -> np.ndarray:
 
 
 def noise_row(level: LevelLines, band_Hz: Sequence[float]) -> dict[str, Any]:
-    """Return the row of checks that says how noisy a record is, by its noisiest channel."""
+    """Return the row of checks on the noise of a record, by its noisiest channel."""
     share = float(np.max(noise_share(level, band_Hz)))
     if not np.isfinite(share):
         text = "There is one period only: noise and transient can not be told from the response."
@@ -127,7 +127,7 @@ def long_record_lines(
     band_Hz: tuple[float, float] = (0.0, np.inf),
 ) -> LevelLines:
     """Return LevelLines of one record without period: force (time,), response (channel, time), Hz;
-    of its last samples, a length quick to transform.
+    of its last samples, a fast length of an FFT.
 
     modes: known ones, whose free decay is the transient over a band; None for local polynomials.
     noise is the scatter about the local polynomials: noise and distortion. periods is 0. Raises
@@ -154,16 +154,16 @@ def long_record_lines(
 
 
 def quick_length(size: int) -> int:
-    """Return the largest number of samples up to size that is quick to transform."""
+    """Return the largest fast length of an FFT up to size."""
     return next(count for count in range(size, 0, -1) if next_fast_len(count, real=True) == count)
 
 
 def _free_decay(modes, frequency, driven, lines):
     """Return (channel, line) the transient in lines (channel, line) under a force (line,).
 
-    By channel, in least squares: the response is that of the modes to the force with residues of
-    their own, and their free decay, (a + b s) / (s² + 2 zeta omega s + omega²) each, with a
-    polynomial for what the ends of the record add.
+    Least squares by channel: the response of the modes to the force with free residues, their free
+    decay, (a + b s) / (s² + 2 zeta omega s + omega²) each, and a polynomial for the ends of the
+    record.
     """
     laplace, receptance = 2j * np.pi * frequency, modes.receptance(frequency)
     ends = [(frequency / frequency[-1] * 1j) ** power for power in range(END_TERMS)]

@@ -1,10 +1,10 @@
 """Linear models of a campaign: modes identified at its lowest level, again at each, and at all
-together; and where the structure changes with the level.
+together; and the places at which the structure changes with the level.
 
 Places, relative displacements at which a law may act, are ranked by how well a bilateral support
 (k, c) of its own per level explains all levels. Between two points with the relative displacement w
 it exerts -(k w + c w'); at the lowest level k = c = 0. Modes, shapes and the (k, c) of all levels
-are fitted together: frequencies and shapes that the support moves tell more of w than the small
+are fitted together: frequencies and shapes that the support moves determine w better than the small
 difference of two measured shapes. Source: the family of linear models of Thenint, Balmes, Corus
 2012, section 4.
 """
@@ -54,7 +54,7 @@ def linear_models(
     """Return the LinearModels of levels in ascending load.
 
     sensors: kinds and names of the channels, number of the one at the force. residuals: modes
-    (below, above) the band; None for the fewest that are needed. Raises ValueError where no pole is
+    (below, above) the band; None for the fewest that are needed. Raises ValueError if no pole is
     stable or levels are too few.
     """
 
@@ -128,7 +128,7 @@ def ranked_places(
 ) -> dict[str, Family]:
     """Return {place: Family}, the best first; places that no mode moves are left out.
 
-    Raises ValueError where none is left.
+    Raises ValueError if none is left.
     """
     rows = {place: row_of(row, base.names) for place, row in places.items()}
     families = {
@@ -149,8 +149,8 @@ def tried_places(ranking: Mapping[str, Family]) -> list[str]:
 
 
 def stiffness_unit(modes: IdentifiedModes, along: np.ndarray) -> float:
-    """Return N/m: what would move the frequency of the mode with most of a relative displacement
-    (mode,) by 1 %.
+    """Return the stiffness in N/m that moves the frequency of the mode with most of a relative
+    displacement (mode,) by 1 %.
     """
     own = ~modes.residual & (along != 0.0)
     return float(np.min(0.02 * modes.omega[own] ** 2 / along[own] ** 2))

@@ -3,7 +3,7 @@ columns of the kernel.
 
 Each is a change of the linear structure that vanishes at vanishing amplitude (a slider that sticks,
 a saturation below its limit), so that the modes of the lowest level stay nearly those of the
-completed model. Their ids are those of the catalogue of effects, where it has them.
+completed model. Their ids are those of the catalogue of effects, if it has them.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ Values = np.ndarray  # (parameter,)
 class Scales:
     """Sizes that a search starts from.
 
-    stiffness: N/m, of the largest change that is seen. low, high: m, RMS relative displacement at
-    the lowest and the highest level. omega: rad/s.
+    stiffness: N/m, of the largest change seen. low, high: m, RMS relative displacement at the
+    lowest and the highest level. omega: rad/s.
     """
 
     stiffness: float
@@ -41,8 +41,8 @@ class LocalLaw:
 
     id: of the catalogue. parameters {name: unit}. columns(values): {column of LocalLaws:
     (element,)}. starts(Scales): values that a fit starts from. signed: parameters of either sign;
-    the others are searched in their logarithm. told(values): {name: (value, unit)}, where
-    parameters are not told as they are. elements: number of elements.
+    the others are searched in their logarithm. told(values): {name: (value, unit)}, if other
+    quantities than the parameters are reported. elements: number of elements.
     """
 
     id: str
@@ -64,7 +64,7 @@ class LocalLaw:
         return EFFECTS[self.id].broken if self.id in EFFECTS else ()
 
     def summary(self, values: Values) -> dict[str, tuple[float, str]]:
-        """Return {name: (value, unit)}, what is told of the values."""
+        """Return {name: (value, unit)}, the reported quantities."""
         if self.told is not None:
             return self.told(values)
         pairs = zip(self.parameters.items(), values, strict=True)
@@ -145,7 +145,7 @@ LAWS = {
         ],
     ),
     # a damper whose force stops at a limit, less the same damper without one: the damping falls
-    # beyond that speed, or rises where the coefficient is negative
+    # beyond that speed, or rises if the coefficient is negative
     "saturation_damping": LocalLaw(
         "saturation_damping",
         {"damping": "N s/m", "speed": "m/s"},

@@ -1,5 +1,5 @@
-"""What of a campaign can be used without a model: one force, one gap, channels that are sound in
-every record, periods or the last stretch of a long record.
+"""The part of a campaign that is usable without a model: one force, one gap, channels that are
+sound in every record, periods or the last stretch of a long record.
 """
 
 from __future__ import annotations
@@ -45,12 +45,12 @@ Rows = list[dict[str, Any]]
 def usable_records(
     campaign: xr.Dataset | str | Path,
 ) -> tuple[xr.Dataset, Rows, CampaignSignals]:
-    """Return (campaign with what is usable, rows of checks, its signals) of a campaign Dataset or
-    the path of its file.
+    """Return (the usable part, rows of checks, its signals) of a campaign Dataset or the path of
+    its file.
 
     Attributes of the Dataset: period_samples (0: each record has a period of its own),
-    transient_periods, and whole_records where records have no period and are cut to their last
-    stretch. Raises Refused with the sentence why.
+    transient_periods, and whole_records if records have no period and are cut to their last
+    stretch. Raises Refused with the reason.
     """
     whole, rows = checked_campaign(campaign)
     if whole is None or refused(rows):
@@ -105,7 +105,7 @@ def _sound(campaign: xr.Dataset, rows: Rows) -> xr.Dataset:
             " name.",
             rows,
         )
-    # the gap that most usable records have: another gap is another structure
+    # the gap of most usable records: another gap is another structure
     gap = np.nan_to_num(campaign["gap"].values.astype(float), nan=-1.0)
     values, counts = np.unique(gap[force], return_counts=True)
     chosen = values[int(np.argmax(counts))]
@@ -121,8 +121,8 @@ def _sound(campaign: xr.Dataset, rows: Rows) -> xr.Dataset:
 
 
 def unsettled_periods(response: np.ndarray, period: int) -> int:
-    """Return how many leading periods of a response (channel, time) differ from the last one by
-    more than the rest do; one is always kept.
+    """Return the number of leading periods of a response (channel, time) that differ from the last
+    one by more than the rest do; one is always kept.
     """
     count = response.shape[-1] // period
     if count < 3:
@@ -154,11 +154,11 @@ def _last_stretch(campaign: xr.Dataset, longest: int) -> xr.Dataset:
 def along_force(
     campaign: xr.Dataset, measured: CampaignSignals, wanted: str | None, rows: Rows
 ) -> tuple[xr.Dataset, int, bool]:
-    """Return (campaign, index of the channel at the force, whether it was turned); that channel
-    counts along the force, since shapes are scaled by it.
+    """Return (campaign, index of the channel at the force, whether it was turned); that channel is
+    made positive along the force, since shapes are scaled by it.
 
     wanted: its name; else the nearest channel along the force, or the nearest of all. A row is
-    added where it is not at the point of the force.
+    added if it is not at the point of the force.
     """
     names = [str(name) for name in campaign["channel_name"].values]
     size = np.linalg.norm(measured.force_directions[0])
@@ -188,7 +188,7 @@ def repeating(
     campaign: xr.Dataset, levels: Sequence[LevelLines], band_Hz: Sequence[float], rows: Rows
 ) -> tuple[xr.Dataset, list[LevelLines]]:
     """Return (campaign in the order of its levels, levels) without records whose response does not
-    repeat with the force: chaotic, drifting or drowned, no law can be told by their waveform.
+    repeat with the force (chaotic, drifting or noisy): no law can be fitted to their waveform.
     """
     kept = []
     for level in levels:

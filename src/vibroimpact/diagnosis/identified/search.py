@@ -1,5 +1,5 @@
 """Laws at places as hypotheses: started, raced, fitted, and added as long as each gains on the
-levels that were set aside for the name.
+levels that were set aside for the choice.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ Log = Callable[[str], None]
 
 @dataclass(frozen=True, eq=False)
 class Setting:
-    """What a search needs.
+    """The input of a search.
 
     places: {name: {channel: coefficient}}. ranking: {place: Family}, fitted to the levels of
     `fitted`. candidates, additions: terms without values. fitted, tried: Records that candidates
-    are fitted to, and those that their names are tried on.
+    are fitted to, and those that choose between them.
     """
 
     places: Mapping[str, Mapping[str, float]]
@@ -58,7 +58,7 @@ class Setting:
 
 
 def search_laws(setting: Setting, most: int, log: Log) -> Search:
-    """Return the Search of candidates, and of additions beside the best of them.
+    """Return the Search of candidates, and of additions to the best of them.
 
     most: 1 for single laws; otherwise laws are added as long as each gains. Gains are those over
     one linear model of all levels.
@@ -75,7 +75,7 @@ def search_laws(setting: Setting, most: int, log: Log) -> Search:
         further = leading(own, nothing)
         if further.apart < best.apart + LEAST_GAIN:
             break
-        # what gained next to nothing is not tried again; the rest may show once this law is there
+        # laws that gained next to nothing are not tried again; others may gain next to this one
         gained = [_names(each)[-1] for each in own if each.apart > best.apart + SOME_GAIN]
         left = set(gained) - set(_names(further))
         others, best = [term for term in others if term.name in left], further
@@ -86,9 +86,9 @@ def search_laws(setting: Setting, most: int, log: Log) -> Search:
 
 
 def leading(found: Sequence[Hypothesis], nothing: Hypothesis) -> Hypothesis:
-    """Return the hypothesis with the largest gain on the levels set aside; of the same laws at
-    places that gain about as much, the one that was stated first: the two sides of a joint move
-    nearly together.
+    """Return the hypothesis with the largest gain on the levels set aside; if the same laws at
+    other places gain about as much, the one stated first: the two sides of a joint move nearly
+    together.
     """
 
     def laws(hypothesis: Any) -> list[str]:
@@ -133,11 +133,11 @@ def _raced(candidates: Sequence[Sequence[Trial]], setting: Setting, log: Log) ->
 
 
 def left_and_floor(setting: Setting, searched: Search) -> tuple[float, float]:
-    """Return (log power of the error that the best hypothesis leaves on the levels set aside, that
-    of a right model): what the linear model misses at the lowest level, or a little.
+    """Return (log power of the error of the best hypothesis on the levels set aside, that of a
+    right model): the error of the linear model at the lowest level, or a little.
 
-    Of records without period a share of a change by level is shown wrongly: their start is that of
-    a force repeated for ever, until it is forgotten.
+    Records without period show a share of a change by level wrongly: they start as if the force had
+    repeated for ever, until that is forgotten.
     """
     best = max(searched.hypotheses, key=attrgetter("worth"), default=None)
     left = np.log(np.mean(setting.reference[1] ** 2)) - (0.0 if best is None else best.apart)
@@ -152,12 +152,12 @@ def left_and_floor(setting: Setting, searched: Search) -> tuple[float, float]:
 
 def _alone(term: LocalTerm, setting: Setting) -> list[Trial]:
     """Return [Trial]: the start of a law by itself, the best of its start values on the modes of
-    the lowest level, of the place's family, or of all levels; empty where none is bounded.
+    the lowest level, of the place's family, or of all levels; empty if none is bounded.
     """
     family, linear, records = setting.ranking[term.place], setting.linear, setting.fitted
     moved = [family.motion(number, own) for number, own in enumerate(records.frequencies)]
     sizes, along = _scales(records, moved), family.modes.shapes @ family.row
-    # a quarter of what, taken away, would leave the structure without any stiffness there
+    # a quarter of the stiffness whose removal would leave the structure none there
     softest = float(0.25 / np.sum(along**2 / family.modes.omega**2))
     changed = float(np.max(np.abs(family.k + 1j * sizes.omega * family.c)))
     values = term.effect.starts(replace(sizes, stiffness=min(changed, softest)))
@@ -167,10 +167,10 @@ def _alone(term: LocalTerm, setting: Setting) -> list[Trial]:
 
 
 def _beside(known: Trial, term: LocalTerm, setting: Setting) -> list[Trial]:
-    """Return [Trial]: starts of a law beside fitted ones, on their modes and on those of the lowest
-    level, or, at a place that no channel shows, with drawn participations.
+    """Return [Trial]: starts of a law added to fitted ones, on their modes and on those of the
+    lowest level, or, at a place that no channel shows, with drawn participations.
 
-    Which of them leads further shows after a few passes only.
+    Only a few passes show which of them leads further.
     """
     modes, records, out = known.modes, setting.fitted, []
     places = [(term, modes), (term, setting.linear.base)]
@@ -193,7 +193,7 @@ def _beside(known: Trial, term: LocalTerm, setting: Setting) -> list[Trial]:
 
 
 def _best(trials: Sequence[Trial], records: Records) -> list[Trial]:
-    """Return [the trial with the least squared error], empty where none has a bounded motion."""
+    """Return [the trial with the least squared error], empty if none has a bounded motion."""
     costs = [records.cost(trial) for trial in trials]
     return [trials[int(np.argmin(costs))]] if np.isfinite(min(costs)) else []
 
@@ -201,8 +201,8 @@ def _best(trials: Sequence[Trial], records: Records) -> list[Trial]:
 def _scales(records: Records, motion: Sequence[np.ndarray]) -> Scales:
     """Return the Scales of a relative displacement, without a stiffness.
 
-    motion [(excited line,)]: it per unit force, by level. omega: below it half of the power of the
-    last level's response lies, all channels together.
+    motion [(excited line,)]: its response per unit force, by level. omega: the median of the power
+    of the last level's response, all channels together.
     """
     rms = []
     for level, lines, own in zip(records.levels, records.excited, motion, strict=True):

@@ -1,4 +1,4 @@
-"""What is stated of a structure without a model, and for the rest what its records say."""
+"""The statements on a structure without a model, and defaults from its records."""
 
 from __future__ import annotations
 
@@ -49,12 +49,12 @@ def check_names(stated: MeasuredStructure, campaign: xr.Dataset) -> None:
 
 
 def check_mean(stated: MeasuredStructure, campaign: xr.Dataset, drive: int) -> None:
-    """Raise ConfigError where the mean is to be compared and the channel at the force (its index)
-    is a velocity or an acceleration.
+    """Raise ConfigError if the mean is to be compared and the channel at the force (its index) is a
+    velocity or an acceleration.
 
     Offsets of levels follow from the static response at the force, and these have none: their mean
-    is the zero of the sensor. It is not just left out, since whoever asks for it wants an even law
-    told by its shift of the mean, and a verdict without it would look as if that had been done.
+    is the zero of the sensor. It is not just left out: users state it to find an even law by its
+    shift of the mean, and a verdict without it would look as if that had been done.
     """
     name, kind = (str(campaign[f"channel_{key}"].values[drive]) for key in ("name", "kind"))
     if stated.mean and TIME_DERIVATIVES.get(kind, 0) > 0:
@@ -72,8 +72,8 @@ def places_of(
 ) -> dict[str, dict[str, float]]:
     """Return {place: {channel: coefficient}} as stated, by default those of default_places.
 
-    turned: the channel of the campaign that counts against its record, None for none. Coefficients
-    are stated for channels as they were recorded, so that those of this one change their sign.
+    turned: the channel of the campaign with its sign reversed, None for none. Coefficients are
+    stated for channels as they were recorded, so that those of this one change sign.
     """
     if stated.places is None:
         names = [str(name) for name in campaign["channel_name"].values]
@@ -101,7 +101,7 @@ def default_places(names: Sequence[str], directions: np.ndarray) -> dict[str, di
     every channel to the ground.
     """
     slugs: list[str] = []
-    for name in names:  # of their own, since they name places
+    for name in names:  # made unique, since they name places
         slug = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_") or "channel"
         slug = slug if slug[0].isalpha() else f"c{slug}"
         slugs.append(slug if slug not in slugs else f"{slug}_{len(slugs)}")
@@ -118,8 +118,8 @@ def default_places(names: Sequence[str], directions: np.ndarray) -> dict[str, di
 def default_band(
     level: LevelLines, kinds: Sequence[str], excited_Hz: Sequence[float], rate: float
 ) -> tuple[float, float]:
-    """Return (low, high) Hz: the excited lines, ended where next to nothing is left of the
-    responses' velocity at a level.
+    """Return (low, high) Hz: the excited lines, up to the frequency above which next to nothing is
+    left of the responses' velocity at a level.
     """
     end = min(excited_Hz[1], SHARPEST * rate)
     inside = (level.frequency >= excited_Hz[0]) & (level.frequency <= end)
@@ -133,8 +133,8 @@ def default_band(
 
 
 def own_units(campaign: xr.Dataset, drive: int) -> dict[str, str]:
-    """Return {unit of a mechanical law: unit here} from those of force and response in SI; empty
-    where the response is a motion.
+    """Return {unit of a mechanical law: unit here} from those of force and response in SI; empty if
+    the response is a motion.
     """
     kind, units = (str(campaign[f"channel_{key}"].values[drive]) for key in ("kind", "units"))
     if kind != "generic":

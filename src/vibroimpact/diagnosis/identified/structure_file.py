@@ -1,4 +1,4 @@
-"""What a user states of a structure without a model: `structure: {kind: identified, ...}`."""
+"""A user's statements on a structure without a model: `structure: {kind: identified, ...}`."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class _File(Section):
 
 
 def model_of(model: Config | MeasuredStructure | str | Path) -> Config | MeasuredStructure:
-    """Return a model as it is checked, or as a file or WORD states it. Raises ConfigError."""
+    """Return a checked model: as given, or of a file or WORD. Raises ConfigError."""
     if isinstance(model, (Config, MeasuredStructure)):
         return model
     stated = read_structure(str(model))
@@ -47,7 +47,7 @@ def values_of(model: Config | MeasuredStructure) -> dict[str, Any]:
 
 
 def read_structure(path: str) -> MeasuredStructure | None:
-    """Return the MeasuredStructure of a YAML file or of WORD; None where the file is a model of
+    """Return the MeasuredStructure of a YAML file or of WORD; None if the file is a model of
     another kind, or holds its modes itself.
 
     Raises ConfigError with every problem: place, value and remedy.

@@ -1,7 +1,7 @@
 """Identified modes with local laws, and their steady response to the measured forces.
 
-What repeats by itself needs no holding: a free periodic run is compared with the records line by
-line.
+A response that repeats by itself needs no holding: a free periodic run is compared with the records
+line by line.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from .local_laws import LAWS, LocalLaw
 STEPS_PER_CYCLE = 66  # of the highest frequency of the band
 DRIVEN_TO = 2.0  # lines of the force that are kept, times the highest frequency of the band
 UNBOUNDED = 1.0e9  # relative error that stands for a motion without bounds
-SETTLINGS = 4  # steps in which the offsets of levels that were not fitted are found
+SETTLINGS = 4  # steps that find the offsets of levels that were not fitted
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,11 +69,11 @@ class LocalTerm:
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """Modes with terms; offsets {level name: constant force beside the measured one}.
+    """Modes with terms; offsets {level name: constant force added to the measured one}.
 
-    An amplifier's zero drifts from record to record, and an even law answers to it: where the mean
-    of the response counts, each level has an offset of its own, which brings the mean where it was
-    measured.
+    An amplifier's zero drifts from record to record, and an even law responds to it: if the mean of
+    the response counts, each level has an offset of its own, which brings the mean to its measured
+    value.
     """
 
     modes: IdentifiedModes
@@ -107,8 +107,8 @@ class Trial:
         return laws
 
     def holds(self) -> bool:
-        """Return whether stiffness is left where all sliders slip and all springs are at their
-        limits: without it a run may look steady for a few periods before it leaves.
+        """Return whether stiffness is left when all sliders slip and all springs are at their
+        limits: without it a run may look steady for a few periods before it diverges.
         """
         along = self.along
         far = np.diag(self.modes.omega**2) + along * self.laws.stiffness @ along.T
@@ -141,7 +141,7 @@ class Records:
 
     @cached_property
     def lines(self) -> list[np.ndarray]:
-        """Return [(kept line,)] per level: the excited lines, after the mean where it counts."""
+        """Return [(kept line,)] per level: the excited lines, after the mean if it counts."""
         return [np.append(0, own) for own in self.excited] if self.mean else self.excited
 
     @cached_property
@@ -152,7 +152,7 @@ class Records:
 
     @cached_property
     def scales(self) -> list[np.ndarray]:
-        """Return [(channel, 1)] per level: what an error of the lines is divided by."""
+        """Return [(channel, 1)] per level: the divisor of an error of the lines."""
         sizes = [channel_scale(level, self.band_Hz) for level in self.levels]
         largest = np.max(sizes, axis=0)
         return [size * (largest / size) ** self.emphasis for size in sizes]
@@ -182,7 +182,7 @@ class Records:
         """Yield (levels, drive force (level, line), displacements and forces of the elements
         (element, level, line)) of every group, complex amplitudes in N and m.
 
-        Raises IntegrationError or ValueError where a law has no bounded motion.
+        Raises IntegrationError or ValueError if a law has no bounded motion.
         """
         model = modal_model(trial.modes, trial.along, trial.laws)
         for part, drive, samples in self.groups:
@@ -198,9 +198,7 @@ class Records:
             yield part, drive.lines, moved, pushed
 
     def predict(self, trial: Trial, periods_before: int = 1) -> list[np.ndarray] | None:
-        """Return [(channel, kept line) complex] per level, None where a trial has no bounded
-        motion.
-        """
+        """Return [(channel, kept line) complex] per level, None if there is no bounded motion."""
         if not trial.holds():
             return None
         count_simulated(len(self.levels) if trial.terms else 0)
@@ -226,7 +224,7 @@ class Records:
         return [(own - measured) / scale for own, measured, scale in rows]
 
     def cost(self, trial: Trial) -> float:
-        """Return the sum of squares that a fit lowers, without its ridges; infinite where the trial
+        """Return the sum of squares that a fit lowers, without its ridges; infinite if the trial
         has no bounded motion.
         """
         predicted = self.predict(trial)
@@ -236,7 +234,7 @@ class Records:
 
     def errors(self, trial: Trial, periods_before: int = 1) -> np.ndarray:
         """Return (level, channel) RMS of measured minus predicted over the RMS measured, the mean
-        left out; UNBOUNDED where the trial has no bounded motion.
+        left out; UNBOUNDED if the trial has no bounded motion.
         """
         predicted = self.predict(trial, periods_before)
         if predicted is None:
@@ -249,8 +247,8 @@ class Records:
         return np.array(rows)
 
     def with_offsets(self, trial: Trial) -> Trial:
-        """Return a trial with offsets that bring the mean response of the drive's channel of every
-        level where it was measured.
+        """Return a trial with offsets that bring the mean response of the drive's channel to its
+        measured value at every level.
         """
         drive = trial.modes.drive
         flexibility = float(trial.modes.frf(np.zeros(1))[drive, 0].real)

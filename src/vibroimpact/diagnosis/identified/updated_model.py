@@ -16,7 +16,7 @@ from vibroimpact.structure.contact.local_elements import COLUMNS
 
 from .trial import Trial
 
-# Shapes hold one direction per channel; which way it points in space is the sensor's affair.
+# Shapes hold one direction per channel; its direction in space does not matter.
 AXIS, DIRECTION, OPPOSITE = "x", [1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]
 STEPS_PER_CYCLE = 200  # of the highest mode or of the band's end
 START_UP_PERIODS = 40  # of the lowest frequency of the band
@@ -31,8 +31,8 @@ def configuration_text(
     """Return the YAML text of the configuration of a Trial, with loads in N RMS; sentence: its
     first line, a comment.
 
-    Points carry the channels' names with underscores; a place that no two channels show is a point
-    of its own.
+    Points carry the channels' names with underscores; a place that is neither a channel nor the
+    difference of two is a separate point.
     """
     modes = trial.modes
     first = modes.frequency[~modes.residual].min()
@@ -73,7 +73,7 @@ def configuration_text(
 
 
 def _modes(trial: Trial, places: Places) -> list[dict[str, Any]]:
-    """Return the entries of all modes, with the shapes of channels and of places of their own."""
+    """Return the entries of all modes, with the shapes of channels and of separate places."""
     modes, names = trial.modes, [_point(own) for own in trial.modes.names]
     hidden = [term for term in trial.terms if not is_relative(places.get(term.place, {}))]
     rows = zip(modes.frequency, modes.damping_ratio, modes.residual, modes.shapes, strict=True)
@@ -90,7 +90,7 @@ def _modes(trial: Trial, places: Places) -> list[dict[str, Any]]:
 
 
 def location(place: str, row: Mapping[str, float] | None) -> str:
-    """Return a place {channel: coefficient} in words; None: one that no channel shows."""
+    """Return a place {channel: coefficient} in words; row: None if no channel shows it."""
     if row is None:
         return "elsewhere: no channel shows the place; its share in every mode was fitted"
     ends = sorted(row, key=lambda name: row[name])

@@ -32,9 +32,9 @@ def attach(config: ConfigPart, campaign: xr.Dataset, basis: Basis | None = None)
     sensors are in the order of the channels: displacements, positive along channel_direction; for
     a strain gauge on a tube the strain of the outer fibre; for a contact force zero. With a
     campaign on a moving base, the drives are the accelerations of the base, and motions are
-    relative to it. Raises ValueError for a channel or force that is more than 5 mm off the
-    structure, where it is no tube off its named points, CampaignError for another number of
-    supports; see comparable.comparison_problems.
+    relative to it. Raises ValueError for a channel or force that is more than 5 mm off the tube, or
+    off the named points of another structure, CampaignError for another number of supports; see
+    comparable.comparison_problems.
     """
     kinds, bases = campaign["channel_kind"].values, _base_directions(campaign)
     channels = len(kinds)
@@ -69,8 +69,8 @@ def attach(config: ConfigPart, campaign: xr.Dataset, basis: Basis | None = None)
 
 
 def attached_basis(config: ConfigPart, campaign: xr.Dataset) -> Basis | None:
-    """Return the Basis of a tube attached to a campaign, which variants of it are
-    reduced on; None of another structure, which is small.
+    """Return the Basis of a tube attached to a campaign, on which its variants are reduced; None
+    for another structure, which is small.
     """
     if config.structure.kind not in TUBES:
         return None
@@ -79,7 +79,7 @@ def attached_basis(config: ConfigPart, campaign: xr.Dataset) -> Basis | None:
 
 
 def _base_directions(campaign):
-    """Return (base acceleration, 3) the directions of what moves the base."""
+    """Return (base acceleration, 3) the directions of the accelerations of the base."""
     return campaign["force_channel_direction"].values[base_channels(campaign)].astype(float)
 
 
@@ -145,7 +145,7 @@ def _sensed_at(config, points):
 
 def with_channel_points(config: ConfigPart, campaign: xr.Dataset) -> ConfigPart:
     """Return the configuration of a tube with a named point at every channel that measures a
-    motion; other structures have their channels at the points that they have.
+    motion; other structures are unchanged: their channels are at their points.
 
     A part at the sensor, or the sensor itself, may be missing in the model there. No point is added
     within SAME_POINT_M of another, for a strain or for a contact force.

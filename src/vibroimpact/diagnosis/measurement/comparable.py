@@ -1,4 +1,4 @@
-"""Which channels of a campaign are compared with a model, and why a comparison is not possible.
+"""The channels of a campaign that are compared with a model, and reasons against a comparison.
 
 The model simulates motions under forces in N or on a moving base, strains of the outer fibre of a
 tube, and the forces of supports. Other channels are left out, with a sentence that says why.
@@ -40,7 +40,7 @@ IDENTIFIED = "model=identified compares without a model"
 
 class Place(NamedTuple):
     """A channel or a force of a campaign. point (3,): m. direction (3,). directed, known: whether
-    its direction is known, and its point too.
+    its direction, and its point too, is known.
     """
 
     number: int
@@ -52,7 +52,7 @@ class Place(NamedTuple):
     known: bool
 
     def fault(self) -> str:
-        """Return why no model can be compared with a channel, "" where one can."""
+        """Return why no model can be compared with a channel, "" if one can."""
         if self.kind not in SENSED:
             return (
                 f"is of kind {self.kind.replace('_', ' ')}; a comparison with a model reads {READ}:"
@@ -91,9 +91,9 @@ def channel_rows(campaign: xr.Dataset) -> list[dict]:
 
 
 def model_rows(config: ConfigPart, campaign: xr.Dataset) -> list[dict]:
-    """Return a row of checks for each channel that a model gives nothing of: strains of a tube that
-    are no bending strains; of a structure of named points strains, and motions along which its
-    point has no degree of freedom.
+    """Return a row of checks for each channel that a model does not give: on a tube strains other
+    than bending strains; on a structure of named points strains, and motions along which its point
+    has no degree of freedom.
     """
     tube = config.structure.kind in TUBES
     structure: Any = build_structure(config) if tube else build_point_structure(config)
@@ -112,8 +112,8 @@ def model_rows(config: ConfigPart, campaign: xr.Dataset) -> list[dict]:
 
 
 def contact_force_fault(model: ModalModel, channel: Place) -> str:
-    """Return why a contact force is left out of the comparison, "" where it is not; model: attached
-    to the campaign.
+    """Return why a contact force is left out of the comparison, "" if it is not; model: attached to
+    the campaign.
     """
     support = support_at(model, channel.point)
     if support is None:
@@ -140,8 +140,8 @@ def contact_force_rows(model: ModalModel, campaign: xr.Dataset) -> list[dict]:
 
 
 def _no_gauge(structure, gauge: Place) -> str:
-    """Return why a gauge does not measure a bending strain of a TubeStructure, "" where it does;
-    its direction is the outward normal there.
+    """Return why a gauge does not measure a bending strain of a TubeStructure, "" if it does; its
+    direction is the outward normal there.
     """
     normal, place = (
         unit_vector(gauge.direction),
@@ -309,7 +309,7 @@ def _place_problems(config, campaign):
 
 
 def _off(locate, point, place):
-    """Return a sentence where a known point (3,) in m is not on the structure, else None; locate:
+    """Return a sentence if a known point (3,) in m is not on the structure, else None; locate:
     raises ValueError there, see Centreline.locate and point_at.
     """
     try:

@@ -1,4 +1,4 @@
-"""Where channels and forces sit on a structure that is known at named points alone: matrices, a
+"""The places of channels and forces on a structure that is known at named points only: matrices, a
 chain, or measured modes.
 """
 
@@ -10,14 +10,14 @@ from vibroimpact.geometry.centreline import LOCATION_TOLERANCE_M
 from vibroimpact.geometry.directions import unit_vector
 from vibroimpact.structure.point_structure import AXES, PointStructure
 
-LEAST_COSINE = 0.1  # between a sensor and a direction of which it measures something
+LEAST_COSINE = 0.1  # between a sensor and a direction that it measures
 
 
 def point_at(
     points: Mapping[str, Sequence[float]], place: Sequence[float] | np.ndarray, what: str
 ) -> str:
-    """Return the name of the point at a place (3,) in m; points: {name: (3,)} m. Raises ValueError
-    when every one is more than 5 mm away from `what`, which is there.
+    """Return the name of the point at a place (3,) in m; points: {name: (3,)} m. what: the channel
+    or force there. Raises ValueError when every point is more than 5 mm away.
     """
     place = np.asarray(place, float)
     away = {name: float(np.linalg.norm(place - at)) for name, at in points.items()}
@@ -37,8 +37,8 @@ def no_motion(
     place: np.ndarray,
     direction: np.ndarray,
 ) -> str:
-    """Return along what, at which point, a structure does not move; empty where it does, and where
-    no point is; see point_at. direction (3,): of a channel or a force there.
+    """Return the direction and point, in words, at which a structure does not move; empty if it
+    does, or if there is no point; see point_at. direction (3,): of a channel or a force there.
     """
     try:
         point, along = point_at(points, place, "it"), unit_vector(direction)

@@ -1,4 +1,4 @@
-"""What each channel of a campaign measures, as a quantity of the simulation: a displacement
+"""The quantity of the simulation that each channel of a campaign measures: a displacement
 differentiated in time, the strain of an outer fibre, or the force of a support on the structure.
 
 Sensors are compared with each other to see how a mode moves them. A strain has another unit than a
@@ -39,10 +39,10 @@ def orders(kinds: Collection[str]) -> np.ndarray:
 
 
 def displacement_scale(model: ModalModel, kinds: Sequence[str] | np.ndarray) -> np.ndarray:
-    """Return (channel,) the displacement that stands for a unit of what a channel measures.
+    """Return (channel,) the displacement equivalent to a unit of a channel's quantity.
 
-    It is 1 but for strains, which are divided by omega, as they go with a velocity, and scaled to
-    the largest of the other sensors. model: attached to the campaign.
+    It is 1 except for strains, which are divided by omega, as they go with a velocity, and scaled
+    to the largest of the other sensors. model: attached to the campaign.
     """
     shapes, gauges = np.abs(model.sensor_shapes), np.asarray(kinds) == STRAIN
     size, scale = shapes.max(axis=0), np.ones(len(gauges))
@@ -57,8 +57,8 @@ def displacement_scale(model: ModalModel, kinds: Sequence[str] | np.ndarray) -> 
 
 
 def support_at(model: ModalModel, position: Sequence[float] | np.ndarray) -> int | None:
-    """Return the index of the support at a position (3,) in m, None where that is more than
-    AT_SUPPORT_M off the line through the contact points of any support.
+    """Return the index of the support at a position (3,) in m, None if that is more than
+    AT_SUPPORT_M off the line through the contact points of every support.
     """
     away = []
     for support in range(len(model.support_names)):
@@ -80,7 +80,7 @@ def across(model: ModalModel, support: int) -> np.ndarray:
 
 def force_weights(model: ModalModel, kinds: Sequence[str] | np.ndarray) -> np.ndarray:
     """Return (contact force channel, 2 support): the weights of the two resultants of every support
-    in what each channel of kind CONTACT_FORCE measures, positive along its direction.
+    in each channel of kind CONTACT_FORCE, positive along its direction.
 
     model: attached to the campaign, its sensors are the channels. Raises ValueError for a channel
     of an unknown kind and for a contact force at no support.

@@ -11,8 +11,8 @@ from vibroimpact.campaign.force_kinds import shown_load_unit
 from vibroimpact.campaign.signals import campaign_signals, excited_band
 
 BANDS = 24
-QUIET = 0.75  # of half the sampling frequency: where the anti-alias filter begins
-QUIET_ABOVE = 1.6  # times the upper end of the band: where the range without excitation begins
+QUIET = 0.75  # of half the sampling frequency: the anti-alias filter begins there
+QUIET_ABOVE = 1.6  # times the upper end of the band: the range without excitation begins there
 LEAST_QUIET = 50  # lines in that range: with fewer, the noise is read in the band
 # The spectrum is divided into parts from the band's lower end over BELOW on; lines of a part.
 BELOW, LEAST_LINES, MOST_LINES = 5.0, 40, 500
@@ -78,7 +78,7 @@ def signals_of(campaign: xr.Dataset) -> Signals:
     band = measured.stated_band or excited_band(force, rate)
     load = measured.load_rms
     gap = measured.gap
-    # of equal loads, as repeats of one force are but for rounding, that of the widest gap
+    # of equal loads (repeats of one force, up to rounding) that of the widest gap
     lowest = np.lexsort((-np.nan_to_num(gap, nan=np.inf), np.round(load, SAME_LOAD)))[0]
     read = noise_of(campaign, (force[lowest], response[lowest]), rate, band, measured.factors)
     noise = np.maximum(read, RESOLUTION * np.sqrt(np.nanmean(response**2, axis=-1)).max(axis=0))
@@ -115,8 +115,8 @@ def noise_of(
     Without a statement, it is the least spectral density of the record of the lowest load: (force
     (force_channel, sample), response (channel, sample)). With contact, impacts fill the range above
     the band, so that it is the mean over the parts of the spectrum that are as low as the lowest
-    one, within their scatter. Where there are too few lines above the band, it is what the forces
-    do not explain in the band. rate, band: Hz. factors (channel,): SI units per stored unit.
+    one, within their scatter. With too few lines above the band, it is the part that the forces do
+    not explain in the band. rate, band: Hz. factors (channel,): SI units per stored unit.
     """
     if "noise_floor_rms" in campaign:
         return np.asarray(campaign["noise_floor_rms"].values, float) * factors
@@ -145,8 +145,8 @@ def _unexplained(force, response, rate, band):
     """Return (channel,) RMS, over the range to half the rate, of the noise that is not coherent
     with the forces; arguments as of noise_of.
 
-    The density is that of the part with the least, of BANDS parts of the band: between the peaks of
-    a response the forces explain it best.
+    The density is the least of BANDS parts of the band: between the peaks of a response the forces
+    explain it best.
     """
     length = min(response.shape[-1], round(SEGMENT_S * rate))
     starts = range(0, response.shape[-1] - length + 1, length // 2)

@@ -17,17 +17,17 @@ from .signals import Signals
 
 SLOWEST_HZ = 2000.0  # records are compared at this rate at least, or at their own
 FADE_S = 1.0  # at the ends of a record, before it is integrated
-AHEAD_STEPS = 4000  # beyond the end of a stretch, which the output filter looks at
+AHEAD_STEPS = 4000  # beyond the end of a stretch, for the output filter
 MOVING = 0.02  # of the speed of the sensor that moves most
-NO_GAP_M = 1.0  # where a record has no clearance
+NO_GAP_M = 1.0  # if a record has no clearance
 
 
 @dataclass(frozen=True, eq=False)
 class Stretch:
     """A stretch of a record.
 
-    record: its number. start_s: where it begins. gap: m. load: RMS of the record's first force.
-    force (step, force_channel): N. motion (step, channel): m, as displacements; 0 of channels that
+    record: its number. start_s: its start. gap: m. load: RMS of the record's first force. force
+    (step, force_channel): N. motion (step, channel): m, as displacements; 0 of channels that
     measure no motion. Both begin one step before the start, in steps of the Schedule.
     moving (channel,) bool: whether a channel moves there.
     """
@@ -43,8 +43,8 @@ class Stretch:
 
 @dataclass(frozen=True)
 class Rates:
-    """Rates of the comparison: decimation of the records, sampling of what is left in Hz, and
-    integration steps per sample of it.
+    """Rates of the comparison: decimation of the records, sampling after it in Hz, and integration
+    steps per sample.
     """
 
     decimation: int
@@ -62,8 +62,8 @@ class Rates:
 
 
 def rates_of(sampling: float, integration: ConfigPart) -> Rates:
-    """Return the Rates of records sampled at a frequency in Hz; the steps per second of the section
-    integration are the least.
+    """Return the Rates of records sampled at a frequency in Hz; at least the steps per second of
+    the section integration.
     """
     decimation = max(int(sampling / SLOWEST_HZ), 1)
     return whole_rates(sampling / decimation, integration, decimation)

@@ -1,5 +1,5 @@
-"""What of a campaign can be compared with a model: checks, and the channels and records that are
-left.
+"""The part of a campaign that can be compared with a model: checks, and the channels and records
+that are left.
 """
 
 from collections.abc import Sequence
@@ -39,8 +39,8 @@ class Refused(Exception):
 def usable(
     campaign: xr.Dataset | str | Path, config: Config
 ) -> tuple[xr.Dataset, list[dict[str, Any]]]:
-    """Return (what can be compared of a campaign or the file of one, rows of all checks). Raises
-    Refused, with the sentence why.
+    """Return (the comparable part of a campaign or of its file, rows of all checks). Raises
+    Refused, with the reason.
     """
     whole, checks = checked_campaign(campaign)
     if whole is not None and not file_checks.refused(checks):
@@ -60,7 +60,7 @@ def usable(
 
 
 def not_testable(campaign: xr.Dataset) -> list[str]:
-    """Return the ids of the effects that need what a campaign does not hold."""
+    """Return the ids of the effects that need quantities missing in a campaign."""
     held = {name for name in ("voltage",) if name in campaign}
     if not base_channels(campaign).any():
         held.add("force")
@@ -78,7 +78,7 @@ def checked_campaign(
 
 
 def _left(whole: xr.Dataset | None, checks: list[dict[str, Any]]) -> xr.Dataset:
-    """Return what the checks leave of a campaign. Raises Refused where that is too little."""
+    """Return the part of a campaign that the checks leave. Raises Refused if that is too little."""
     if file_checks.refused(checks) or whole is None:
         raise Refused(next(row["message"] for row in checks if row["level"] == "refuse"), checks)
     force, response = file_checks.usable_signals(whole, checks)
@@ -111,8 +111,8 @@ def refuse(sentence: str, checks: Sequence[dict[str, Any]]) -> NoReturn:
 
 
 def _against_model(config: Config, campaign: xr.Dataset) -> list[dict[str, Any]]:
-    """Return rows for channels that do not go with the model attached to the campaign: contact
-    forces that it has not, and what contradicts the linear model at the lowest level, swapped,
+    """Return rows for channels that do not match the model attached to the campaign: contact forces
+    that it lacks, and channels that contradict the linear model at the lowest level: swapped,
     reversed, or in another unit.
     """
     model, measured = attach(config, campaign), relative_to_base(campaign_signals(campaign))

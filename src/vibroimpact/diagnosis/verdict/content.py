@@ -293,7 +293,7 @@ def not_testable(
 def write_verdict(verdict: Verdict, path: str | Path) -> None:
     """Write a verdict as JSON, whole or not at all.
 
-    Raises pydantic.ValidationError where the content does not keep the schema.
+    Raises pydantic.ValidationError if the content does not keep the schema.
     """
     values = Verdict.from_values(verdict.to_values()).to_values()
     write_text(json.dumps(values, indent=1, allow_nan=False), path)

@@ -1,5 +1,5 @@
 """Distances of model and measurement in dB: their excess over chance, the share that a completion
-closes, and the text in place of a model that is no better.
+closes, and the text in place of a model that is not better.
 
 closed_fraction is the only definition of that share.
 """
@@ -9,7 +9,7 @@ from typing import Any
 
 from vibroimpact.effects.registry import effects_in_words
 
-NO_EXCESS = 0.5  # of the floor: a smaller excess tells nothing
+NO_EXCESS = 0.5  # of the floor: a smaller excess is no information
 
 
 def excess(distance: float, floor: float) -> float:
