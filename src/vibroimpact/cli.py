@@ -18,7 +18,7 @@ from vibroimpact.equivalent_support.contact_export import command as contact_com
 from vibroimpact.study.wear import command as wear_command
 
 # Read when numpy is first imported. The matrices are small: threads would wait for each other, and
-# take up to ten times the CPU. Runs are what is done side by side.
+# take up to ten times the CPU. Runs are made side by side instead.
 ONE_THREAD = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL")}
 PREFIX = {"warn": "warning: ", "not checked": "{check}: "}  # of the sentence of a check
 NETCDF = (".nc", ".nc4", ".cdf")
@@ -77,7 +77,7 @@ def _check(options: argparse.Namespace) -> int:
 
 
 def _compare(options: argparse.Namespace) -> int:
-    """Hold frequency responses to a linear model. Return 1 if it can not be done."""
+    """Compare frequency responses with a linear model. Return 1 if it can not be done."""
     from vibroimpact.campaign.file import CampaignError, read_campaign
     from vibroimpact.campaign.importing.frf import read_frfs
     from vibroimpact.config.problems import ConfigError

@@ -31,7 +31,7 @@ from .structure import Structure
 Problems = Iterator[tuple[str, Any, str]]
 
 STEPS_PER_EXCITED_PERIOD = 20
-# kernels.RATIO, output_filter.LEAST_STAGES and PASS_FRACTION, which only what integrates may import
+# kernels.RATIO, output_filter.LEAST_STAGES and PASS_FRACTION, which only the integration may import
 FILTER_RATIO, FILTER_STAGES, FILTER_PASSES = 5, 2, 0.78125
 # In rad. The exact scheme has no error in a mode alone; below pi, a mode is not aliased.
 LARGEST_OMEGA_STEP = {"newmark": 1.0, "exact": 2.8}

@@ -15,7 +15,7 @@ from .quantities import Section
 from .schema import Config, Spectra
 
 OUT = "leave it out"
-FORCES = {  # of an element: a term, and what else it takes
+FORCES = {  # of an element: a term, and the keys that it needs
     "stiffness_N_per_m": None,
     "quadratic_N_per_m2": None,
     "cubic_N_per_m3": None,

@@ -75,7 +75,7 @@ class Mixture(Section):
 def given_or_mixed(value: float | None, info: ValidationInfo) -> float | None:
     """Return a density given, or that of the `mixture` of the same section.
 
-    Raises PydanticCustomError where both are given and differ.
+    Raises PydanticCustomError if both are given and differ.
     """
     mixture = info.data.get("mixture")
     if mixture is None:

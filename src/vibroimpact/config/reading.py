@@ -53,7 +53,7 @@ def check_config(data: dict[str, Any], source: str) -> Config:
     """
     problems: list[str] = []
     mended: dict[str, Any] | None = data
-    while mended is not None:  # once more where a mistake has hidden others
+    while mended is not None:  # once more if a mistake has hidden others
         read, errors = mended, []
         config = None
         try:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 TARGETS = ("validation",)
-# How snakemake marks a wildcard, and what names no folder inside results/.
+# Marks of a wildcard of snakemake, and names of no folder inside results/.
 UNUSABLE = r"[{}/\\*?\x00-\x1f]|^\.*$"
 DRAW_NAME = r"(acceptance|development)_([0-9]+)"  # of every draw of campaigns
 

@@ -14,7 +14,7 @@ from vibroimpact.io.provenance import config_digest
 
 from .schema import Config
 
-# What makes the reduced model, and what a simulation with it needs.
+# Keys of the reduced model, and of a simulation with it.
 MODEL = (
     "structure",
     "damping",
@@ -125,7 +125,7 @@ STAGE_KEYS: dict[str, tuple[str, ...]] = {
 }
 
 
-# What the numbers of a case depend on, and the tables that gather them.
+# The keys that the numbers of a case depend on, and the tables that gather them.
 ANSWER_STAGES = ("basis", "simulate_to_spectra", "spectra", "identify", "consistency")
 
 

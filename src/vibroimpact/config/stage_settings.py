@@ -67,6 +67,6 @@ def _frozen(value: Any, place: str) -> Any:
     return value
 
 
-# What a function of the library takes from a configuration: the StageSettings of a stage, or
-# the same part of a whole Config. The schema checks the values, so the annotation is Any.
+# The configuration of a function of the library: the StageSettings of a stage, or the same part of
+# a whole Config. The schema checks the values, so the annotation is Any.
 ConfigPart: TypeAlias = Any

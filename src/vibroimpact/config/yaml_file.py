@@ -13,14 +13,14 @@ from .yaml_loader import PlainLoader
 
 MOST_BYTES = 10**7
 TEMPLATES = "__use_yte__"  # with this key, Snakemake runs the expressions in a file as Python
-# How text begins that has 16 or 32 bits per character.
+# Beginnings of text with 16 or 32 bits per character.
 WIDE_TEXT = (b"\xff\xfe", b"\xfe\xff", b"\0\0\xfe\xff")
 
 OPENED = {
     "while parsing a flow sequence": ("list", "[", "]"),
     "while parsing a flow mapping": ("block", "{", "}"),
 }
-# What PyYAML says -> what is wrong, and the remedy.
+# Message of PyYAML -> the fault, and the remedy.
 PLAIN_WORDS = (
     (
         "mapping values are not allowed here",

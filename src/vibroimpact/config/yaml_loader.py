@@ -21,13 +21,13 @@ DEEPEST = 30
 MOST_VALUES = 100_000
 MERGE = "tag:yaml.org,2002:merge"
 NO_DECIMAL = re.compile(r"[-+]?(0[0-9_]+|[0-9_.]+:[0-9_.:]+)")  # 010 is 8, 1:30 is 90
-# What no name or path can hold, but an escape in quotes can write.
+# Characters that no name or path can hold, but an escape in quotes can write.
 NO_TEXT = re.compile("[\0-\x08\x0b-\x1f\x7f\ud800-\udfff]")
 
 
 class PlainLoader(yaml.SafeLoader):
-    """The loader. Every problem is a MarkedYAMLError, but escapes of no character, which are a
-    ValueError or an OverflowError.
+    """The loader. Every problem is a MarkedYAMLError, except escapes of no character: ValueError or
+    OverflowError.
     """
 
     def __init__(self, stream: Any) -> None:

@@ -112,9 +112,9 @@ def _beyond_chance(runs, signals):
 
 def _simulated(structure, signals, point, records=None, seeds=range(SEEDS)):
     """Return (record, seed, channel, sample): free runs of a Point, as the sensors record them, NaN
-    of other records than those given.
+    for other records than those given.
 
-    Where the exact step makes a damped contact grow by itself, Newmark's is taken.
+    If the exact step makes a damped contact grow by itself, Newmark's is taken.
     """
     samples = max(valid_samples(signals, record) for record in range(len(signals.load)))
     integration = structure.config.integration

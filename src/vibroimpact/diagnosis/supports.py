@@ -5,8 +5,8 @@ then follows the measured impacts one by one, and its contact forces are those o
 
 Source: the task is that of M. De Araujo, J. Antunes, P. Piteau, Remote identification of impact
 forces on loosely supported tubes, J. Sound Vib. 215 (1998) 1015-1041, who invert the propagation of
-waves; here an observer gives the forces. That two runs driven by the same data agree only where the
-data determine them: H. Abarbanel, N. Rulkov, M. Sushchik, Phys. Rev. E 53 (1996) 4528.
+waves; here an observer gives the forces. Two runs driven by the same data agree only if the data
+determine them: H. Abarbanel, N. Rulkov, M. Sushchik, Phys. Rev. E 53 (1996) 4528.
 """
 
 from collections.abc import Iterator

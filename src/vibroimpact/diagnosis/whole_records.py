@@ -26,8 +26,8 @@ STRENGTH = 4.0
 class Held:
     """A record held to its measurement, in stretches that follow one another without a break.
 
-    first_s: where the first stretch begins. strength (channel,): of the dampers, N s/m.
-    known (channel,): share of the power of the measured velocity that is no noise.
+    first_s: start of the first stretch. strength (channel,): of the dampers, N s/m.
+    known (channel,): share of the power of the measured velocity that is signal.
     """
 
     record: int
@@ -108,8 +108,8 @@ class Holder:
         return 2.0 * np.pi * first_mode_Hz(model) / float(moved)
 
     def _share_known(self, motions):
-        """Return (channel,) 0 to 1: the share of the measured velocity's power that is no noise,
-        which is white to half the sampling frequency; motions: [(step, channel)] in m.
+        """Return (channel,) 0 to 1: the share of the measured velocity's power that is signal;
+        noise is white to half the sampling frequency; motions: [(step, channel)] in m.
 
         The Wiener filter of a whole channel: a damper to noise would only drive the structure.
         """

@@ -8,7 +8,7 @@ from .effect import Effect, Parameter, Values
 
 def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with the force turned by an angle, about_z or about_tube: the
-    tangent where it acts.
+    tangent at the force.
     """
     turned = values["excitation"].get("turn_deg", 0.0) + math.degrees(parameters["angle"])
     return values | {

@@ -2,8 +2,8 @@
 
 Scaling load and gap by one factor then scales every displacement and force by it, and leaves every
 frequency, k and c as they are. Elastic contact, contact damping, Coulomb friction, flat stops,
-linear elements and the stops' random offsets (fractions of the gap) keep this; what has a length or
-a force of its own does not.
+linear elements and the stops' random offsets (fractions of the gap) keep this; laws with a fixed
+length or force do not.
 """
 
 from __future__ import annotations

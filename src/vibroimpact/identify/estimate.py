@@ -19,7 +19,7 @@ FREQUENCY_ERROR = 0.003
 # A stiffness differs from zero when it exceeds two standard errors of the model plus four of
 # chance. Four, because a study has hundreds of cases and at k = 0 none of them may claim a support.
 MODEL_SIGMAS, CHANCE_SIGMAS = 2.0, 4.0
-BOUND_SIGMAS = 2.0  # of chance, above the value found: k is below that where it does not differ
+BOUND_SIGMAS = 2.0  # of chance, above the value found: upper bound of k if it does not differ
 # Relative standard error of k, of the model and of chance together.
 WEAK_ABOVE, UNRESOLVED_ABOVE = 0.25, 0.5
 EDGE = 0.05  # of ln k: a value so near the edge of the range that was searched is the edge's

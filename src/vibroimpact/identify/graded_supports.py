@@ -2,8 +2,8 @@
 
 A stiffness must differ from zero by the model's and chance's errors, as that of one support must:
 see estimate. The response depends on k through k/(1 + k G), with G the compliance of the structure
-where the support acts. So its sensitivity to k is (1 + k G)² times smaller than at k = 0, and the
-error of k as much larger.
+at the support. So its sensitivity to k is (1 + k G)² times smaller than at k = 0, and the error of
+k as much larger.
 """
 
 from dataclasses import dataclass, replace
@@ -35,7 +35,7 @@ C_ERROR, LOSS_ERROR = 0.5, 0.15
 class MethodResult:
     """The supports that a method found.
 
-    k, c: (direction,) N/m and N s/m; c is NaN if the method does not tell it.
+    k, c: (direction,) N/m and N s/m; c is NaN if the method does not give it.
     covariance: (2 direction, 2 direction) of (ln k, c).
     by_frequency: (2 direction,) change of (ln k, c) per relative error of the model's frequencies;
         None if the covariance holds the model's error.
@@ -105,7 +105,7 @@ def graded_supports(
 
 
 def _why_unresolved(k: float, error: float, search: SupportSearch) -> str:
-    """Return why no method could tell this k, or an empty text."""
+    """Return why no method could find this k, or an empty text."""
     if not np.isfinite(k) or not np.isfinite(error):
         return "no finite support has this response"
     return edge_of_range(k, search.stiffness_range)

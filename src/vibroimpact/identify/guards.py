@@ -1,8 +1,8 @@
 """Doubts about an estimate beyond its standard error: the texts of the column `flag`.
 
-A flag does not change a value, but for a run whose energy balance is open: what was identified from
-it is not resolved. A flagged estimate takes no part in the recommended values. The column
-`caution` holds remarks on a case, whatever the method.
+A flag does not change a value. Only a run whose energy balance is open has no resolved values. A
+flagged estimate takes no part in the recommended values. The column `caution` holds remarks on a
+case, whatever the method.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ FEWEST_AVERAGES = 8.0
 STIFFEST_CHECKED = max(STIFFNESSES)  # N/m, of the comparison of reduced with full frequencies
 FLANKS = LEVELS["peak_25th"]  # the part of a peak that has a weight in every fit
 SAME_POLE = 1.0e-3  # relative; the inverse is exact, so that a larger difference is another mode
-GUARDED = ("contact_fraction", "stress_flag", "stress_peak")  # of a record, where it has them
+GUARDED = ("contact_fraction", "stress_flag", "stress_peak")  # of a record, if it has them
 FROM_POLES = (*PEAK_METHODS, "lscf")
 FROM_SPECTRA = (*FROM_POLES, "ods", "broadband")
 

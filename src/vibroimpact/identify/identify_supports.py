@@ -30,7 +30,7 @@ from .supports_by_shapes import ShapeComparison, ShapesFit, block_shapes
 from .supports_by_spectra import CoarseCost, SpectraComparison, SpectraFit
 from .supports_tube import SupportsTube
 
-SHAPE_LOSS = 0.1  # loss factor of the supports where the search by shapes starts
+SHAPE_LOSS = 0.1  # loss factor of the supports at the start of the search by shapes
 
 
 @dataclass(frozen=True)
@@ -214,7 +214,7 @@ def _why(case: SupportsCase) -> str:
 
 
 def _shape_of(fit: SpectraFit) -> np.ndarray:
-    """Return a covariance without the scatter's size, of spectra that have none."""
+    """Return the covariance of spectra without scatter: its shape, without a size."""
     return inverse_information(fit.values.jacobian)
 
 

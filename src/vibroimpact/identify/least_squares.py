@@ -16,7 +16,7 @@ RAISE, LOWER = 4.0, 0.2
 TRIES = 8
 SETTLED = 2.0e-4  # relative decrease of the cost at which it ends
 
-# What a function of the values returns: its error, and its error with the Jacobian.
+# Functions of the values: their error, and their error with the Jacobian.
 ErrorOf = Callable[[np.ndarray], np.ndarray | None]
 Evaluate = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 

@@ -25,7 +25,7 @@ NEGLIGIBLE = 0.005
 SMALL_SHAPE = 1.0e-3
 # Penalties in units of the relative error: per shape as large as all modes together, per relative
 # change of a frequency (a tenth of it for residual modes), and per change of a damping ratio by a
-# factor of e. They keep what the record does not show near the start.
+# factor of e. They keep values that the record does not determine near the start.
 RIDGE, FREQUENCY_RIDGE, RATIO_RIDGE = 3.0e-3, 0.4, 0.01
 
 

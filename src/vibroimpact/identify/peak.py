@@ -196,7 +196,7 @@ def _score(
         largest = max(abs(change[1]) * 20.0, abs(change[2]))
         if largest < tolerance:
             return _Score(theta, bins, curve, slopes, weights)
-        # The weights follow the curve. Where this makes the steps oscillate, half steps converge.
+        # The weights follow the curve. If this makes the steps oscillate, half steps converge.
         theta = theta + change * min(1.0 if step < FULL_STEPS else 0.5, 0.5 / largest)
         if not _plausible(theta, frequency):
             return None

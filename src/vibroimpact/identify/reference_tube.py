@@ -26,7 +26,7 @@ SHAPES = 60
 # Total damping of the first mode over that without c.
 MAP_DAMPING = (0.6, 1.0, 1.6, 2.5, 4.0, 6.5, 10.0)
 STABLE_FRACTION = 0.9  # of the negative damping that makes a mode unstable
-SMALL_K = 1.0  # N/m, where derivatives without support are taken
+SMALL_K = 1.0  # N/m, at which derivatives without support are taken
 
 
 @dataclass(frozen=True)

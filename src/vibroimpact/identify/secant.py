@@ -1,11 +1,10 @@
 """Secant stiffness and damping of a support, from the contact forces of a simulated record.
 
-With f the restoring force and u the displacement along a direction, k = E[f u] / E[u²] and
-c = E[f v] / E[v²], v the velocity: of all linear supports, the one whose force is nearest to f in
-the mean square where u and v are uncorrelated. If a support is not symmetric, about its mean: a
-preload or a one-sided stop has no part in the stiffness. c counts the power that leaves the
-direction: the power that friction and damping dissipate, and that the contact hands to the other
-direction.
+With f the restoring force and u the displacement along a direction, k = E[f u] / E[u²] and c = E[f
+v] / E[v²], v the velocity: of all linear supports, the one whose force is nearest to f in the mean
+square if u and v are uncorrelated. If a support is not symmetric, about its mean: a preload or a
+one-sided stop has no part in the stiffness. c counts the power that leaves the direction: the power
+that friction and damping dissipate, and that the contact hands to the other direction.
 """
 
 from dataclasses import dataclass

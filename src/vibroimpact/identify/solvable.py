@@ -1,4 +1,4 @@
-"""Methods on spectra that they can not be applied to: no value in place of an error."""
+"""Methods on unsuitable spectra: no value in place of an error."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Result = TypeVar("Result")
 
 
 def or_none(method: Callable[..., Result | None], *arguments: object) -> Result | None:
-    """Return what a method finds, None if its equations have no solution.
+    """Return the result of a method, None if its equations have no solution.
 
     Spectra without a resonance, of sensors that do not move or that move alike, make matrices
     singular.

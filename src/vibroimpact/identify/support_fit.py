@@ -14,11 +14,11 @@ import numpy as np
 # starts, and how often each direction has its turn.
 SPACING, SKIPPED, SWEEPS = 1.5, 3, 3
 STEPS = 40
-UNSEEN = 1.0e-6  # of the largest derivative: what is smaller is round-off
+UNSEEN = 1.0e-6  # of the largest derivative: a smaller one is round-off
 TOLERANCE = 1.0e-9
 LOSSES = (0.0, 0.1, 0.4)  # loss factors omega c / k of the supports that a search starts from
 
-# What a method gives: (residual (residual,), jacobian (residual, 2 direction)) at (k, c).
+# The result of a method: (residual (residual,), jacobian (residual, 2 direction)) at (k, c).
 Evaluate = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 LowestDamping = Callable[[np.ndarray], np.ndarray]
@@ -94,8 +94,8 @@ class SupportSearch:
     def _swept(self, cost: Callable[[np.ndarray], float], directions: int) -> np.ndarray:
         """Return (direction,) ln k near the smallest cost(ln k).
 
-        Sweeps over one direction at a time begin at several stiffnesses that all have alike: each
-        alone ends too often with one support taken for infinitely stiff.
+        Sweeps over one direction at a time begin at several stiffnesses common to all: a single
+        start ends too often with one support taken for infinitely stiff.
         """
         low, high = np.log(self.stiffness_range)
         places = np.linspace(low, high, 2 + int((high - low) / SPACING))

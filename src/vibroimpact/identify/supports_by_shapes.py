@@ -1,10 +1,10 @@
 """Shape identification of several supports: the (k, c) of each whose deflection shapes fit best.
 
-One shape of the main peak cannot tell several supports apart. So the band of the shape line's
-spectra is cut into blocks, each with its own operational deflection shape (ODS), the first singular
-vector as in `ods`. The linear structure's shape in a block is G u, with G the sum of h h^H over
-the block, h its response along the line and u the measured shape: if u is the structure's own
-ODS, G u is along u. Its derivatives are closed.
+One shape of the main peak cannot separate several supports. So the band of the shape line's spectra
+is cut into blocks, each with its own operational deflection shape (ODS), the first singular vector
+as in `ods`. The linear structure's shape in a block is G u, with G the sum of h h^H over the block,
+h its response along the line and u the measured shape: if u is the structure's own ODS, G u is
+along u. Its derivatives are closed.
 
 A block counts by the inverse of its variance, which holds the error of the sensors' gains, the part
 of the motion that is not one shape, and the error of the model's frequencies.
@@ -33,7 +33,7 @@ from .support_fit import (
 BLOCK_HZ = 1.0
 FEWEST_BINS = 5
 # Loss factor omega c / k of the supports at the main peak that is expected, and its scatter. A
-# shape hardly tells c, so that the expectation decides where it does not.
+# shape hardly determines c: otherwise the expectation decides.
 LOSS, LOSS_SCATTER = 0.1, 0.3
 
 
@@ -143,7 +143,7 @@ class ShapeComparison:
         """
         self.structure, self.observed, self.search = structure, observed, search
         share = measured.weights * force_psd
-        # Where the force has no power the structure's shape is 0 and has no direction.
+        # Without power of the force the structure's shape is 0 and has no direction.
         heard = share.sum(axis=1) > 1.0e-3 * measured.weights.sum(axis=1)
         self.measured = measured.of(heard)
         self.share = share[heard]

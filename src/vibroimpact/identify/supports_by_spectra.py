@@ -2,7 +2,7 @@
 
 As in `broadband`, amplitude spectral densities are compared and their common level is free. With
 several unknowns one response point is not enough: all sensors along the driven directions take
-part, each scaled to unit length, so that a quiet sensor beside a support counts as a loud one does.
+part, each scaled to unit length, so that a quiet sensor near a support counts like a loud one.
 """
 
 from collections.abc import Sequence

@@ -35,8 +35,8 @@ Receive = Callable[[int, np.ndarray, np.ndarray, np.ndarray], None]
 class BatchResult:
     """Records and sums of a batch of up to LANES cases; the last axis of every sum is the case.
 
-    displacement (case, channel, sample) m: sensors, then the shape line. None, as the next two,
-        where the time series were handed over piece by piece.
+    displacement (case, channel, sample) m: sensors, then the shape line. None, as the next two, if
+        the time series were handed over piece by piece.
     acceleration (case, sensor, sample) m/s².
     force (case, channel, sample) N: two resultants per support, on the structure, then the drive
         forces.

@@ -2,9 +2,8 @@
 
     q'' + D q' + W q = b F + C^T f(Cq, Cq') + sum_s S_s^T u_s,      u_s = c_s (v_s - S_s q')
 
-v_s is the measured velocity of sensor s, S_s its row and c_s the strength of its damper. Where
-model and structure agree, the dampers carry noise; the holding force u_s is a force missing in the
-model.
+v_s is the measured velocity of sensor s, S_s its row and c_s the strength of its damper. If model
+and structure agree, the dampers carry noise; the holding force u_s is a force missing in the model.
 
 Source: a passive, collocated observer: D.G. Luenberger, IEEE Trans. Autom. Control 16 (1971)
 596-602; M. Demetriou, Math. Control Signals Syst. (natural observers of second-order systems).

@@ -45,7 +45,7 @@ RowKey = tuple[int, int] | int  # (contact point, direction) of a contact row, o
 
 
 class ModalLayout:
-    """Where the modes, contact rows and force rows of a ModalModel sit in the kernel's flat arrays.
+    """The modes, contact rows and force rows of a ModalModel in the kernel's flat arrays.
 
     groups: list of (mode indices, force channels) of each uncoupled group.
     implicit_shapes: for each group {RowKey: shape (mode of the group,)}, in the order of its rows.

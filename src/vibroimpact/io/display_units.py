@@ -48,6 +48,6 @@ def display_unit(unit: str, values: Iterable[float | None]) -> tuple[str, float]
     given = np.abs(np.array([*values, 0.0], float))
     largest = given[np.isfinite(given)].max()
     known = SHOWN.get(SPELT.get(unit, unit), ((unit, 1.0, np.inf),))
-    if largest == 0.0:  # no size: the SI unit itself, or the first where it is not among them
+    if largest == 0.0:  # no size: the SI unit itself, or the first if it is not among them
         return next(((name, factor) for name, factor, _ in known if factor == 1.0), known[0][:2])
     return next((name, factor) for name, factor, below in known if largest < below)

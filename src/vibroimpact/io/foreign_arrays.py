@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-# What a compressed file may become: a small one up to FREE_BYTES, a large one MOST_RATIO times.
+# Largest size of a file after decompression: FREE_BYTES, or MOST_RATIO times a large one.
 FREE_BYTES = 256 * 10**6
 MOST_RATIO = 20
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 HEADER, TAG = 128, 8  # bytes
 VERSION_73 = (b"\0\2IM", b"\2\0MI")  # how the header of an HDF5 file of MATLAB ends
-BYTE_ORDER = {b"IM": "<", b"MI": ">"}  # what stands at the end of the header of a v5 file
+BYTE_ORDER = {b"IM": "<", b"MI": ">"}  # the end of the header of a v5 file
 BYTES, MATRIX, COMPRESSED = 2, 14, 15  # types of elements
 TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
 STRUCTURE, SPARSE, INT32 = 2, 5, 12  # classes of arrays
@@ -150,7 +150,7 @@ def _arrays(content: memoryview, order: str, name: str, depth: int) -> Iterator[
     _, (_, sizes), (_, own), *parts = _parts(content, order)
     shape = struct.unpack(f"{order}{len(sizes) // 4}i", sizes)
     name = name or _text(own)
-    if not name:  # what MATLAB keeps of objects and functions
+    if not name:  # data of objects and functions
         return
     if min(shape, default=-1) < 0:
         raise ValueError(f"{name!r} has the size {shape}")
@@ -184,7 +184,7 @@ def _fields(parts: list, order: str, name: str, depth: int) -> Iterator[tuple[st
 
 
 def _array(name: str, word: int, shape: tuple[int, ...], parts: list, order: str) -> Any:
-    """Return the array or sparse matrix of the parts of a variable: where its values stand if it
+    """Return the array or sparse matrix of the parts of a variable: the places of its values if it
     is sparse, the values, their imaginary parts if it is complex.
     """
     array_class, indices = word & 0xFF, [INT32] * (2 * (word & 0xFF == SPARSE))
@@ -226,7 +226,7 @@ def _numbers(name: str, kind: int, content: memoryview, array_class: int, order:
 def _sparse(
     name: str, shape: tuple[int, ...], rows: np.ndarray, starts: np.ndarray, values: np.ndarray
 ) -> sparse.csc_array:
-    """Return a matrix of the rows of its values and where each column starts among them."""
+    """Return a matrix from the rows of its values and the index at which each column starts."""
     from scipy import sparse
 
     count = int(starts[-1]) if len(starts) else -1

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-MAX_ENTRIES = 8  # a few variants beside the unchanged model
+MAX_ENTRIES = 8  # the unchanged model and a few variants
 
 
 class Memo:

@@ -107,8 +107,8 @@ def file_attributes(params: Mapping[str, Any], library: str) -> dict[str, str]:
     """Return the global attributes of a netCDF file of a stage: its origin and its configuration.
 
     params: {dotted key: value} that the stage was given. As YAML they are the attribute
-    `configuration`; with `config_digest` they tell which settings the file depends on, and no
-    others: a key of a later stage changes neither.
+    `configuration`; with `config_digest` they are the settings that the file depends on: a key of a
+    later stage changes neither.
     library: the library_digest of the stage.
     """
     study = {"study": str(params["study"])} if "study" in params else {}

@@ -177,7 +177,7 @@ def _auxiliary(dataset: xr.Dataset, names: dict[str, str]) -> dict:
 
 
 def _is_text(name: str, values: np.ndarray) -> bool:
-    """Return whether values are texts. Raises TypeError where they are no numbers either."""
+    """Return whether values are texts. Raises TypeError if they are no numbers either."""
     text = values.dtype.kind in "UO" and all(isinstance(value, str) for value in values.flat)
     if not text and values.dtype.kind not in "fiu":
         raise TypeError(f"'{name}' holds {values.dtype}: numbers and texts alone are written")
@@ -385,7 +385,7 @@ def read_hdf5_arrays(path: str | Path) -> dict[str, np.ndarray]:
 def _foreign(path: str | Path, kind: str) -> Iterator[None]:
     """Turn whatever a library raises on a damaged file into a RecordError."""
     try:
-        # netCDF4 warns where it leaves out an attribute that would change the values.
+        # netCDF4 warns if it leaves out an attribute that would change the values.
         with warnings.catch_warnings(action="error", category=UserWarning):
             yield
     except RecordError:

@@ -69,13 +69,13 @@ WORD = re.compile(r"[A-Za-z]{3,}")  # a name; shorter ones are symbols, in which
 SHARE_OF_G = re.compile(r"(milli|m|µ|u)?[gG](?:'?s)?")
 # A number before the unit, as in 0.001 m.
 SCALED = re.compile(r"(\d+(?:\.\d*)?(?:[eE][+-]?\d+)?)\s+(\D.*)")
-# What no unit needs and pint would evaluate or skip: a power of a number (9**9**9 takes minutes), a
-# number in brackets, one of two digits, two superscripts, a comment.
+# Texts that no unit needs and that pint would evaluate or skip: a power of a number (9**9**9 takes
+# minutes), a number in brackets, one of two digits, two superscripts, a comment.
 NO_UNIT = re.compile(r"[#\x00-\x1f]|\d\s*(?:\^|\*\*)|\(\s*[+-]?\d|\d\d|[\d⁰¹²³⁴⁵⁶⁷⁸⁹][⁰¹²³⁴⁵⁶⁷⁸⁹]")
 LONGEST = 60  # characters
 PREFIX = {None: 1.0, "milli": 1e-3, "m": 1e-3, "µ": 1e-6, "u": 1e-6}
 STANDARD_GRAVITY = 9.80665
-# Where no force was measured, an input in volts serves as the excitation.
+# Without a measured force, an input in volts serves as the excitation.
 EXCITATION_KINDS = ("force", "voltage")
 
 

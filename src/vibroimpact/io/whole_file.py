@@ -13,7 +13,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 HOST = re.sub(r"[^A-Za-z0-9-]", "-", socket.gethostname())
-# .name.of.the.file.HOST.PID: whose process, and on which machine, tells a file that was left over.
+# .name.of.the.file.HOST.PID: process and machine show whether a file was left over.
 TEMPORARY = re.compile(r"\..+\.(?P<host>[A-Za-z0-9-]+)\.(?P<process>\d+)")
 PROBE_BYTES = 2**20
 FULL = (errno.ENOSPC, errno.EDQUOT)

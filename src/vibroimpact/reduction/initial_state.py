@@ -14,8 +14,8 @@ from vibroimpact.structure.rigid_motions import rigid_motion
 
 # In the norm of the mass matrix. A residual of 0.05 is 0.25 % of the kinetic energy.
 LARGEST_RESIDUAL = 0.05
-# Motion of a held end, of the largest displacement of the field. Where it does not vanish, the
-# field is not one of this tube.
+# Motion of a held end, of the largest displacement of the field. If it does not vanish, the field
+# is not one of this tube.
 HELD_END = 1.0e-2
 NO_MOTION = 1.0e-6  # of the largest motion of a point by a mode
 AXES = "xyz"

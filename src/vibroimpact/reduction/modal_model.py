@@ -46,7 +46,7 @@ NAMES = {
 }
 
 
-NEAR = 0.05  # of a frequency: what a measured structure may differ by from its model
+NEAR = 0.05  # of a frequency: largest difference of a measured structure from its model
 ROUNDING = 1.0e-9  # of a frequency: a mode that is put NEAR below another is valid
 
 
@@ -78,7 +78,7 @@ class ModalModel:
     contact_position: (contact_point, 3) m.
     contact_laws: the terms of the contacts beyond the elastic circle; None for nothing.
     preload: (contact_point,) N, force at rest of each flat land of the point, whose gap is minus
-        the depth that it takes; 0 for none. integration.preload puts the obstacles there.
+        the indentation that it takes; 0 for none. integration.preload puts the obstacles there.
 
     Local elements:
 
@@ -124,7 +124,7 @@ class ModalModel:
     stress_shapes: np.ndarray
     section_names: tuple[str, ...]
     full_mode_frequencies: np.ndarray
-    # Filled in by __post_init__ where they are None.
+    # Filled in by __post_init__ if they are None.
     contact_laws: ContactLaws = None  # type: ignore[assignment]
     preload: np.ndarray = None  # type: ignore[assignment]
     element_shapes: np.ndarray = None  # type: ignore[assignment]

@@ -3,7 +3,7 @@
 # UDUNITS has no fractional powers, so a unit with one stands in a comment.
 PER_ROOT_KG = "in kg^-1/2: displacement in m per modal amplitude in kg^1/2 m"
 
-# name: (units, None where UDUNITS can not write it; long name; comment)
+# name: (units, None if UDUNITS can not write it; long name; comment)
 MODEL_VARIABLES: dict[str, tuple[str | None, str, str]] = {
     "omega": ("rad s-1", "angular frequency of the mode", ""),
     "damping": ("s-1", "damping of the mode: 2 x damping ratio x angular frequency", ""),

@@ -71,10 +71,10 @@ def build_model(
     motion_only: leave out the shape line and the stresses.
     gauges: (named point, outward normal (3,)) of strain gauges on a tube. Each is one more sensor
         behind those of record.sensors, its shape a strain per unit amplitude.
-    basis: of another configuration, see reduced_basis, on whose mesh the structure is built and
-        that it is reduced on; its own basis is made if None, or if its degrees of freedom are
-        others. A variant that differs in point masses, local elements or stops at a point needs no
-        mesh and no basis of its own.
+    basis: of another configuration, see reduced_basis: the structure is built on its mesh and
+        reduced on it; a new basis is made if None, or if the degrees of freedom differ. A variant
+        that differs in point masses, local elements or stops at a point needs no mesh and no basis
+        of its own.
 
     Raises ValueError when a support or a named point is more than 5 mm off the tube, a name is
     unknown, no mode is left, round-off hides a stiffness (see _refuse_false_rigid_modes), a preload

@@ -23,7 +23,7 @@ FAMILIES = ("free_modes", "constrained_modes", "attachment_shapes")
 # more. The singular values of the static shapes are above 7e-3.
 RANK_TOLERANCE = 1.0e-5
 # The stiffness is factored as it is when its lowest eigenvalue, scaled to a unit diagonal, is not
-# below this. Where rigid-body motion is free, or an element is 1e-4 of the tube, it is below.
+# below this. If rigid-body motion is free, or an element is 1e-4 of the tube, it is below.
 SINGULAR_BELOW = 1.0e-14
 DEFINITE_AT = 1.0e-10  # lowest scaled eigenvalue with the shift
 # Round-off of a strain energy, over the sum of the absolute values of its terms. Rigid motions of
@@ -216,7 +216,7 @@ def _added_shapes(
     directions, sizes, _ = np.linalg.svd(energy, full_matrices=False)
     independent = directions[:, sizes > RANK_TOLERANCE]
     added = linalg.solve_triangular(group.factor.T, independent, lower=False)
-    # A rigid motion has hardly any strain energy: only its mass tells how much of it is left.
+    # A rigid motion has hardly any strain energy: only its mass shows how much of it is left.
     rigid = free[:, omega == 0.0]
     if rigid.size:
         added -= rigid @ (rigid.T @ (group.mass @ added))

@@ -1,8 +1,8 @@
 """The report of one campaign as a single HTML file with embedded figures.
 
 The page shows the conclusion and its probability, the places of the largest differences, the law
-that the records demand, the effect with its values, its gain on records that took no part,
-the explanations ruled out and why, and the measurement that would separate the rest.
+that the records demand, the effect with its values, its gain on held-out records, the explanations
+ruled out and why, and the measurement that would separate the rest.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from .verdict_words import (
     withdrawn_sentence,
 )
 
-# The records of each misfit, what took no part first.
+# The records of each misfit, held-out ones first.
 SPLITS = {
     "holdout": "held out: not fitted",
     "fit": "fitted",
@@ -40,7 +40,7 @@ HEADINGS = {
     "partly_explained": "A part of the missing effects",
     "ambiguous": "The most probable of them",
 }
-# Section of the page by the figure's name; others go to what adding the effect does.
+# Section of the page by the figure's name; others go to the result of adding the effect.
 SECTIONS = {
     "diagnosis_ranking": "sure",
     "diagnosis_holding": "where",
@@ -68,7 +68,7 @@ def discrepancy_page(
     verdict: its Verdict.
     figures: PNG files in their order, each with its caption in a .txt file of the same name.
     floor: meaning of the floor of the misfit, FREE_RUNS or NOISE.
-    model: path of the completed model, model_updated.yaml beside the page if None.
+    model: path of the completed model, model_updated.yaml next to the page if None.
     """
     tests = [
         f"{test}, {TESTS[test]}" if test in TESTS else str(test)

@@ -10,14 +10,14 @@ from vibroimpact.effects.registry import effects_in_words
 
 NOTHING = "nothing is missing"
 LEAST_SHOWN = 0.005
-SURE = 0.5  # above it an explanation speaks against a verdict that does not tell it
+SURE = 0.5  # above it an explanation speaks against a verdict that does not name it
 
 
 @dataclass(frozen=True)
 class Explanation:
     """An explanation in words with its probability.
 
-    told: whether the verdict tells it. open: nothing, or something else.
+    told: whether the verdict names it. open: nothing, or something else.
     """
 
     words: str

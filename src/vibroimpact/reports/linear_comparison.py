@@ -142,7 +142,7 @@ def _mac(first: np.ndarray, second: np.ndarray) -> float:
 
 
 def comparison_text(modes: list[dict], checks: list[dict]) -> list[str]:
-    """Return the lines that tell a linear comparison on a terminal."""
+    """Return a linear comparison as lines for a terminal."""
     lines = ["measured              model                 difference   MAC"]
     for row in modes:
         measured = f"{row['frequency_Hz']:8.5g} Hz {row['damping_ratio']:6.2%}"

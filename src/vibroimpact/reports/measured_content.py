@@ -21,8 +21,8 @@ LEVELS = {"load_rms_N": ("Load", "N", 1.0), "response_rms_m": ("Response", "mm",
 class MeasuredContent(StudyContent):
     """The content of the page of a measured tube, in the place of a study.
 
-    campaign: its name. records: how many were read. level: of LEVELS. notes: sentences on what was
-    taken for what.
+    campaign: its name. records: how many were read. level: of LEVELS. notes: sentences on the
+    assumptions.
     """
 
     campaign: str = ""

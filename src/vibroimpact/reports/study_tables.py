@@ -103,8 +103,8 @@ def reason_table(
 ) -> Table:
     """Return why values are not resolved or differ, a row per run of loads with the same reason.
 
-    k and c share a row if they share the reason. The share of time in contact tells whether
-    there was a support to see.
+    k and c share a row if they share the reason. The share of time in contact shows whether there
+    was a support to see.
     """
     places = ("supports", "direction") if several else ()
     columns = ("gap (mm)", *places, f"loads ({unit} RMS)", "value", "why", "time in contact (%)")
@@ -134,7 +134,7 @@ def reason_table(
 def _kind(row: Answer, quantity: str) -> tuple[str, str, str] | None:
     """Return (k, c or both, agreement, reason without its numbers), by which loads share a row.
 
-    None if there is nothing to tell, or k tells it.
+    None if there is no reason, or k has the same.
     """
     value: Value = getattr(row, quantity)
     both = not row.k.resolved and not row.c.resolved and row.k.reason == row.c.reason

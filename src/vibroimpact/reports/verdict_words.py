@@ -75,7 +75,7 @@ def _tried(verdict):
 
 
 def _nothing_missing(verdict):
-    """Return the sentence of the verdict `none`, with the p-value of all differences where it was
+    """Return the sentence of the verdict `none`, with the p-value of all differences if it was
     computed.
     """
     chance = verdict.p_global_before

@@ -132,7 +132,7 @@ class CaseSpectra:
                 self._finish_segment()
 
     def _finish_segment(self) -> None:
-        """Transform the full segment and leave in the buffer what the next one overlaps."""
+        """Transform the full segment and keep its overlap with the next one in the buffer."""
         sensors = 2 * self._sensors
         line = self._transforms[1](self._buffer[sensors:])
         values = self._transforms[0](self._buffer[:sensors])

@@ -18,7 +18,7 @@ import numpy as np
 
 ID_PATTERN = re.compile(r"load_(?P<load>[^_]+)_gap_(?P<gap>[^_]+)_seed_(?P<seed>\d+)")
 SIGNIFICANT_DIGITS = 6
-# Cases of a job at most: minutes of work beside the seconds that a job needs to start, and files
+# Cases of a job at most: minutes of work against the seconds that a job needs to start, and files
 # that Snakemake handles at once.
 CASES_PER_JOB = 1000
 SEEDS_PER_JOB = 64  # the force of each seed is in memory

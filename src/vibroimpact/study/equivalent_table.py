@@ -1,8 +1,8 @@
 """The table of a study that answers: which stiffness and damping for which support.
 
 There is a row per gap, load, group of supports and direction. The recommended k and c are the
-median of the compared methods' medians; the secant values of the simulated contact forces stand
-beside them as a check.
+median of the compared methods' medians; the secant values of the simulated contact forces serve as
+a check.
 """
 
 from __future__ import annotations
@@ -129,7 +129,7 @@ def recommended(spans: Mapping[str, Span], agreement: str) -> Span:
 
 
 def _bound(methods: dict[str, dict], spans: Mapping[str, Span]) -> float:
-    """Return the upper bound of k: the least bound of a method, and what others resolve."""
+    """Return the upper bound of k: the least bound of a method, and no less than others resolve."""
     bounds = [float(methods[name].get("k_bound", np.nan)) for name in spans]
     bounds = [value for value in bounds if np.isfinite(value)]
     resolved = [span[2] for span in spans.values() if np.isfinite(span[0])]

@@ -55,7 +55,7 @@ def trace_cases(
         gap = np.array([case.gap_m for case in batch])
         scheme = config.integration.scheme
         rest = None
-        if model.presses_at_rest:  # at zero, what presses would hit the structure at the start
+        if model.presses_at_rest:  # at zero, pressing supports would hit the structure at the start
             schedule = Schedule(rate, rate / (LEAST_STAGES * RATIO), 0.0, 1.0, scheme)
             offset, rest = seated(model, schedule, gap, offset)
             rest = rest_state(model, schedule, gap, offset, rest)

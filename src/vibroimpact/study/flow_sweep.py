@@ -1,9 +1,9 @@
 """A tube with gaps in flows of rising velocity, and the linear tubes that stand for it.
 
 Each run has one turbulent load and one velocity. It starts at rest, or with a motion of several
-gaps: where the two differ, the tube has two ways to vibrate. Runs under the turbulence alone give k
+gaps: if the two differ, the tube has two ways to vibrate. Runs under the turbulence alone give k
 and c of each support; with them the eigenvalues have the critical velocity that the equivalent
-linear tube predicts. Where the turbulence follows the velocity there is such a run at each.
+linear tube predicts. If the turbulence follows the velocity there is such a run at each.
 """
 
 from __future__ import annotations
@@ -64,10 +64,10 @@ class FlowRun:
 
 @dataclass(frozen=True)
 class Equivalent:
-    """The linear tube of the turbulence at a velocity, 0 where it is the same at all.
+    """The linear tube of the turbulence at a velocity, 0 if it is the same at all.
 
     k, c: of a support under the turbulence alone, the mean over the supports. critical: velocity
-    with k and c of each; NaN where there is none.
+    with k and c of each; NaN if there is none.
     """
 
     load_rms_N: float
@@ -237,7 +237,7 @@ class _LineSquares:
 
 
 def _bounded(integrate: Any, laws: list[FluidLaws]) -> tuple[BatchResult, set[int]]:
-    """Return (result, lanes that grew without bound); the flow of these is taken away."""
+    """Return (result, lanes that grew without bound); these run without flow then."""
     grown: set[int] = set()
     while True:
         try:
@@ -315,8 +315,8 @@ def _onset(tube: ModelInFlow, runs: list[FlowRun], tubes: list[Equivalent]) -> O
 
 
 def equivalent_onset(tubes: Sequence[Equivalent]) -> float:
-    """Return the velocity in m/s that is critical for the k and c of the turbulence at it,
-    interpolated; NaN where the range has none.
+    """Return the velocity in m/s that is critical for the k and c of the turbulence there,
+    interpolated; NaN if the range has none.
     """
     if len(tubes) == 1:
         return tubes[0].critical_m_per_s
@@ -339,7 +339,7 @@ def equivalent_onset(tubes: Sequence[Equivalent]) -> float:
 
 def onset_of(runs: Sequence[FlowRun]) -> float:
     """Return the velocity in m/s at which the response is ONSET times that to the turbulence alone:
-    the median over seeds, interpolated; NaN where it never is.
+    the median over seeds, interpolated; NaN if it never is.
     """
 
     def median(coupled: bool) -> dict[float, float]:

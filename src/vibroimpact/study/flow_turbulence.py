@@ -17,7 +17,7 @@ def at_velocity(config: Config, velocity: float) -> tuple[Config, float]:
     """Return (configuration with the spectrum of the force at a velocity in m/s, force RMS there
     over the load of the grid).
 
-    Both are those of the grid where flow.turbulence is null.
+    Both are those of the grid if flow.turbulence is null.
     """
     rule, force = cast(Any, config.flow).turbulence, cast(Any, config.excitation)
     if rule is None:

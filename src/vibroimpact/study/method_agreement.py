@@ -16,7 +16,7 @@ from vibroimpact.identify.estimate import METHODS
 # One of each kind of method. The pole and the shape both read the main peak, the broadband PSD the
 # whole band.
 COMPARED = ("lscf", "ods", "broadband")
-COMPARED_DAMPING = ("lscf", "broadband")  # a shape tells no damping
+COMPARED_DAMPING = ("lscf", "broadband")  # a shape carries no damping
 FEWEST = {"k": 2, "c": 1}  # methods that must resolve a value; a single stiffness is not confirmed
 # Largest relative distance of a stiffness from the median of three; of two values from each other,
 # over the smaller.
@@ -25,7 +25,7 @@ AGREEMENT = 0.25
 # overlap; differ: with disjoint ones, so that there is no recommended value.
 VERDICTS = ("agree", "partial", "spread", "differ", "unresolved")
 WEAK = "weak: "  # how the reason of a value begins that is resolved, but weakly
-Span = tuple[float, float, float]  # median, smallest, largest; NaN where not resolved
+Span = tuple[float, float, float]  # median, smallest, largest; NaN if not resolved
 SUMMARY_COLUMNS = (
     "gap_m",
     "load_rms_N",
@@ -86,7 +86,7 @@ def summary_rows(rows: list[dict]) -> list[dict]:
     ratio: k_median over the median of the k_median of the three compared methods.
     verdict_k, verdict_c: of the compared methods, see verdict; empty in the rows of all others.
     reason: why k or c is not resolved, or k is weak; empty if both are, or if the method
-        never tells c.
+        never gives c.
     flag: the doubts about the values of one or more seeds, and in how many, see identify.guards.
     k_bound: N/m, the upper bound of k if it does not differ from 0, the largest over seeds.
     contact_fraction: median over seeds. caution: further remarks on the cases.
@@ -134,8 +134,8 @@ def compared_spans(methods: Mapping[str, dict], quantity: str, several: bool) ->
     """Return the Span of k or c of each compared method.
 
     methods: {method: row of consistency_summary.csv} of one place.
-    several: whether the supports are identified each for itself. The pole then only corrects what
-        the broadband comparison found, and tells nothing if that does not resolve k.
+    several: whether the supports are identified each for itself. The pole then only corrects the
+        result of the broadband comparison, and has no value if that does not resolve k.
     """
     spans = {
         name: tuple(

@@ -36,7 +36,7 @@ from vibroimpact.reduction.reduced_model import (
     point_rows_of,
 )
 
-# A larger structure takes minutes to reduce: its job says what is wrong with it.
+# A larger structure takes minutes to reduce: its job reports its faults.
 MOST_DOFS = 3000
 STILL = 1.0e-9  # of the largest motion of a sensor: none
 

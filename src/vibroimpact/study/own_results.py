@@ -13,7 +13,7 @@ from vibroimpact.io.records import RecordError, read_attributes
 from .cases import all_cases
 from .run_files import CONFIG_FILE, PROVENANCE_FILE
 
-# Global attributes of a record: the digests of what simulated it, and of what made its model.
+# Global attributes of a record: the digests of its simulation, and of its model.
 SIMULATED, MODEL_DIGEST = "config_digest", "model_digest"
 SIMULATING = ("simulate", "simulate_to_spectra")  # the stages of which one makes the records
 

@@ -87,7 +87,7 @@ def _integrated(config, model, schedule, batch, drive, writer) -> BatchResult:
     gap = np.array([case.gap_m for case in batch])
     offset = np.stack([imperfection(config, model, case) for case in batch], axis=-1)
     offset, rest = seated(model, schedule, gap, offset)
-    if model.presses_at_rest:  # at zero, what presses would hit the structure at the start
+    if model.presses_at_rest:  # at zero, pressing supports would hit the structure at the start
         rest = rest_state(model, schedule, gap, offset, rest)
     with nullcontext() if writer is None else writer(schedule, batch) as put:
         try:

@@ -31,13 +31,13 @@ ABOUT = {
 class SupportEstimates(Mapping[str, Estimate]):
     """The estimates of the equivalent supports of one case, by method: estimates["lscf"].k in N/m.
 
-    Where several groups of supports or directions are identified, `of` selects one of them first:
+    If several groups of supports or directions are identified, `of` selects one of them first:
     estimates.of("plate_1", "y")["lscf"].k.
 
     load_rms_N: RMS of the force, N.
     gap_m: radial clearance, m.
     estimates: one Estimate per method, group of supports and direction.
-    curves: Dataset of what was fitted: poles, spectra and shapes of every method.
+    curves: Dataset of the fits: poles, spectra and shapes of every method.
     """
 
     load_rms_N: float
@@ -113,7 +113,7 @@ class SupportEstimates(Mapping[str, Estimate]):
 
 
 def _line(estimate: Estimate) -> str:
-    """Return one line of the table: values with standard errors, a dash for what is not there."""
+    """Return one line of the table: values with standard errors, a dash for a missing one."""
     k = _with_error(estimate.k, estimate.k_standard_error)
     c = _with_error(estimate.c, estimate.c_standard_error)
     quality = estimate.quality + (f", flagged: {estimate.flag}" if estimate.flag else "")

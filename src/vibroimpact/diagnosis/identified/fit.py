@@ -14,8 +14,8 @@ from ..completed import NINETY_SD
 from ..constants import INDEPENDENT
 from .trial import LocalTerm, Records, Trial
 
-# Of the error at the start, per factor of e of a positive value from its start: a fixed ridge holds
-# a law where it began once the error is as small as the ridge.
+# Of the error at the start, per factor of e of a positive value from its start: a fixed ridge would
+# hold a law at its start once the error is as small as the ridge.
 LAW_RIDGE = 0.015
 PARTICIPATION_RIDGE = 0.003
 STEP = 1.0e-3  # of differences
@@ -112,7 +112,7 @@ class TrialFit:
 def fitted(start: Trial, records: Records, passes: int) -> Fitted:
     """Return the Fitted of a Trial from a start, after at most `passes` passes.
 
-    Raises ValueError where the start has no bounded motion.
+    Raises ValueError if the start has no bounded motion.
     """
     fit = TrialFit(start, records)
     minimum = minimise_by_differences(fit.error, fit.begin, fit.steps, passes)

@@ -27,8 +27,8 @@ from vibroimpact.reduction.modal_structure import IdentifiedModes
 
 SAME_LOAD = 1.05  # records within this factor repeat one level
 FEWEST_FITTED = 3  # with fewer fitted levels none is left to choose a law on
-# Share of the response that noise may have without a warning: of the mean over periods, and of a
-# record without period, where distortion counts as noise.
+# Share of the response that noise may have without a warning: of the mean over periods; of a record
+# without period, with distortion as noise.
 NOISY, LOUD = 0.05, 0.5
 HALF_WIDTH, ORDER = 4, 2  # lines on either side; degree of both polynomials
 END_TERMS = 3  # of the polynomial in s by the ends of a record, added to the free decay

@@ -59,7 +59,7 @@ class Signals:
         return np.geomspace(*self.band_Hz, BANDS + 1)
 
     def fit(self) -> np.ndarray:
-        """Return the records not of the split "holdout"; all records where all of them are."""
+        """Return the records not of the split "holdout"; all records if all of them are."""
         chosen = np.flatnonzero(self.split != "holdout")
         return chosen if len(chosen) else np.arange(len(self.load))
 

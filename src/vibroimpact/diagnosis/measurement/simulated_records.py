@@ -40,10 +40,10 @@ def simulate_records(
     beyond the end of a record. runs: (record, gap in m, seed) of each; a gap that is not finite
     stands for none. kinds (channel,): see sensed_motion.SENSED.
 
-    Before a record begins, the structure is at rest under its dead loads, in contact where they
-    press it against a support. The seed of a run draws small offsets of the obstacles, so that two
-    runs of an impacting tube differ. A diverged run is NaN. Raises ValueError for another kind and
-    for a contact force at no support, IntegrationError where more than LOST of a batch diverge.
+    Before a record begins, the structure is at rest under its dead loads, in contact if they press
+    it against a support. The seed of a run draws small offsets of the obstacles, so that two runs
+    of an impacting tube differ. A diverged run is NaN. Raises ValueError for another kind and for a
+    contact force at no support, IntegrationError if more than LOST of a batch diverge.
     """
     at_step = lru_cache(maxsize=None)(lambda record: _at_step(force[record], schedule))
     out = np.empty((len(runs), len(kinds), schedule.samples), np.float32)
@@ -107,7 +107,7 @@ def _at_step(force, schedule):
 
 def _led(schedule):
     """Return (Schedule, steps) with a start-up as long as the memory of the output filter, which
-    then starts on a structure at rest, also where the rest position is not zero.
+    then starts on a structure at rest, even if the rest position is not zero.
     """
     ticks = schedule.filter.delay + SLOTS
     return replace(schedule, start_up=ticks * RATIO / schedule.steps_per_second), ticks * RATIO

@@ -195,8 +195,8 @@ def driven_axes(direction: Sequence[float] | np.ndarray) -> tuple[str, ...]:
 def highest_kept_frequency_Hz(config: ConfigPart) -> float:
     """Return the frequency in Hz up to which the identification needs segment spectra.
 
-    The half spectra of the pole estimator need twice its band. The broadband correlation needs what
-    the window smears across the end of its band.
+    The half spectra of the pole estimator need twice its band. The broadband correlation needs the
+    bins that the window smears across the end of its band.
     """
     identification = config.identification
     return max(2.0 * identification.lscf.band_Hz[1], 1.2 * identification.broadband.band_Hz[1])

@@ -27,7 +27,7 @@ def read_csv(path: str | Path) -> list[Signal]:
     One line of names stands above the table, "name" or "name [unit]", as a comment or not; a column
     "time" gives the sampling. The separator is a comma, semicolon, tab or blanks; with a semicolon
     or tab, decimal commas are read. Raises ImportProblem for a table without names, two columns of
-    one name and where a cell is no number.
+    one name or a cell that is no number.
     """
     numbered, lines, note = _numbered_lines(path)
     separator = next((mark for mark in "\t;," if mark in lines[1][1]), None)
@@ -54,7 +54,7 @@ def read_csv(path: str | Path) -> list[Signal]:
 
 def _numbered_lines(path):
     """Return [(number, line)] of a file, those that are no comment, and a note on its encoding.
-    Raises ImportProblem where there is no table.
+    Raises ImportProblem if there is no table.
     """
     text, note = read_encoded(path)
     if text.startswith(LABVIEW):

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 TIME_NAMES = ("time", "t", "time_s", "time (s)", "time [s]", "zeit")
-# Files of recorders that are not read, by the end of their name: what they are, and the remedy.
+# Files of recorders that are not read, by the end of their name: their kind, and the remedy.
 UNREAD = {
     ".lvm": "is a LabVIEW measurement file, which is not read: save its table as CSV, with one line"
     " of names above it, or convert it with the Python package lvm_read",

@@ -1,4 +1,4 @@
-"""Plots drawn with matplotlib: PNG and PDF, with the CSV of what is plotted."""
+"""Plots drawn with matplotlib: PNG and PDF, with the CSV of the plotted data."""
 
 from __future__ import annotations
 
@@ -288,7 +288,7 @@ def _legend_below(sheet: Sheet, plot: Plot) -> None:
 
 
 def _colour_bar(sheet: Sheet, bar: ColourBar) -> None:
-    """Add a colour bar beside all panels, or below some."""
+    """Add a colour bar to the right of all panels, or below some."""
     norm = (LogNorm if bar.log else Normalize)(bar.low, bar.high)
     colours = ScalarMappable(norm, ORDERED if bar.curves else matplotlib.colormaps["viridis"])
     axes = [sheet.axes[name] for name in bar.panels or sheet.axes]

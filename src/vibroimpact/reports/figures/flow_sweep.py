@@ -1,4 +1,4 @@
-"""A tube with gaps in flows of rising velocity, beside what the linear tubes predict."""
+"""A tube with gaps in flows of rising velocity, and the predictions of the linear tubes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Labels that stand beside what they name, and beside each other."""
+"""Labels next to the things that they name, without overlap."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def spread_labels(figure: Figure, labels: Sequence[Annotation]) -> None:
 
     labels: annotations of a figure whose places are offsets in points.
 
-    The highest stays, the others move down; where that leads below the axes, all move up again.
+    The highest stays, the others move down; if that leads below the axes, all move up again.
     """
     if len(labels) < 2:
         return

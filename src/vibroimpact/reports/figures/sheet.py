@@ -203,7 +203,7 @@ class Sheet:
             axes.legend(**style)
 
     def colour_bar(self, mappable: Any, axes: Any, column: str, **style: Any) -> Colorbar:
-        """Add a colour bar for a column beside axes (one or several)."""
+        """Add a colour bar for a column next to axes (one or several)."""
         bar = self.figure.colorbar(mappable, ax=axes, pad=0.02, **style)
         bar.set_label(label_of(column))
         return bar

@@ -1,4 +1,4 @@
-"""The command `vibroimpact wear`: its arguments, and what it prints and writes.
+"""The command `vibroimpact wear`: its arguments, its output and its files.
 
 The library is imported when the command runs, so that `--help` answers at once.
 """
@@ -28,7 +28,7 @@ KEYS = {  # argument -> key of the section `wear`
     "tube_share": "tube_share",
     "gap_grows": "gap_grows",
 }
-FOREVER = 1e4  # years, above which the time to the limit is not told
+FOREVER = 1e4  # years, above which the time to the limit is not shown
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -67,7 +67,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command. Return 1 where there is no answer."""
+    """Run the command. Return 1 if there is no answer."""
     from vibroimpact.config.problems import ConfigError
     from vibroimpact.io.records import RecordError, write_table
 

@@ -6,8 +6,8 @@ Over the length L of the contact a volume takes an area of the cross-section,
 - against a bore, the crescent of the tube's circle that lies outside that of the bore.
 
 At a tilt theta the depth falls by theta per length from one edge of the contact: the volume is the
-integral of the area. A shallow flat at d <= L theta has d = (2R)^(-1/5) (15 theta V / 8)^(2/5).
-Where the support wears too, V_t of a worn V_w is the tube's, and so is V_t / V_w of the depth.
+integral of the area. A shallow flat at d <= L theta has d = (2R)^(-1/5) (15 theta V / 8)^(2/5). If
+the support wears too, the tube has V_t of the worn V_w, and V_t / V_w of the depth.
 
 Source: code_aster R7.04.10 (usuvus, usupru), whose flats are approximations of the segment.
 """
@@ -28,7 +28,7 @@ class WornShape:
     """The shape that a support wears into a tube.
 
     length, radius: of the contact and of the tube, m. bore: radius of the hole, m, infinite for a
-    flat bar. tilt: of the support on the tube's axis, rad. tube_share: of what is worn away.
+    flat bar. tilt: of the support on the tube's axis, rad. tube_share: of the worn volume.
     """
 
     length: float

@@ -78,7 +78,7 @@ PAIRS = {
 
 
 def published_laws(shape: str) -> Sequence[Archard]:
-    """Return Archard's law of each pair of PAIRS for a shape; of all where it has one pair only.
+    """Return Archard's law of each pair of PAIRS for a shape; of all shapes if it has one pair.
 
     One test of one pair is no range.
     """

@@ -50,7 +50,7 @@ class WearRow:
 
 
 def wear_laws(support: Support, wear: Wear) -> Sequence[WearLaw]:
-    """Return the laws of wear at a support; the published ones of its shape where none is given."""
+    """Return the laws of wear at a support; the published ones of its shape if none is given."""
     laws: list[WearLaw] = [Archard(value) for value in wear.coefficient_m2_per_N]
     laws += [EdfMz()] if wear.slowing else []
     if laws:
@@ -64,7 +64,7 @@ def wear_rows(config: ConfigPart, records: Sequence[str | Path], wear: Wear) -> 
     """Return the WearRows of records, by gap, load, support, land and law.
 
     A hole wears a crescent, a flat land or bar a flat, over the height of the support. Lands that
-    do no work are left out, but for the first of a support without any. Raises NoWear, RecordError.
+    do no work are left out, except the first of a support without any. Raises NoWear, RecordError.
     """
     structure: ConfigPart = config.structure
     if structure.kind not in TUBES or section_kind(structure.section) != "tube":
@@ -194,5 +194,5 @@ def deepest(rows: Sequence[WearRow]) -> Iterator[list[WearRow]]:
 
 
 def wear_rank(rows: Sequence[WearRow]) -> tuple[float, float]:
-    """Return what ranks the rows of a land: the depth, then how soon the limit is reached."""
+    """Return the rank of the rows of a land: by depth, then by how soon the limit is reached."""
     return max(row.depth_m for row in rows), -min(row.years_to_limit for row in rows)

@@ -15,8 +15,8 @@ from .life import NoWear, WearRow, wear_rows
 def wear_life(folder: str | Path, wear: Wear) -> list[WearRow]:
     """Return the WearRows of a study's folder.
 
-    Raises NoWear, ConfigError, and RecordError where a record is missing or of another
-    configuration than config.yaml there.
+    Raises NoWear, ConfigError, and RecordError if a record is missing or of another configuration
+    than config.yaml there.
     """
     folder = Path(folder)
     if not any((folder / "records").glob("*.nc")):

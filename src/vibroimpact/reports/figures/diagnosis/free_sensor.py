@@ -61,7 +61,7 @@ def _chosen(error, free):
 
 
 def _waveform(evidence, states, title):
-    """Return the Panel of the measurement, and of what each state predicts."""
+    """Return the Panel of the measurement and the prediction of each state."""
     column = COLUMNS[evidence["waveform"].attrs["units"]]
     series, time = evidence["waveform"].values, evidence["moment_time"].values
     items = [Series("measured", time, series[0], label="measured", width=2.2, order=1)]

@@ -51,7 +51,7 @@ def holding_figure(evidence: xr.Dataset) -> Plot:
 
 def chosen_levels(evidence: xr.Dataset) -> list[int]:
     """Return up to MOST_LEVELS stretches of different records: the lowest and the highest load, and
-    one between that took no part, if there is one.
+    a held-out one between, if there is one.
     """
     load, part = evidence["load"].values, evidence["part"].values
     order = sorted(range(len(load)), key=lambda row: (load[row], part[row] != "apart"))
@@ -76,7 +76,7 @@ def chosen_channels(evidence: xr.Dataset) -> list[int]:
 
 
 def _title(evidence, states):
-    """Return the RMS over channels of a stretch that took no part, and where it was largest."""
+    """Return the RMS over channels of a held-out stretch, and the place of its maximum."""
     power = evidence["holding_force"].values.astype(float) ** 2
     apart = np.flatnonzero(evidence["part"].values == "apart")
     rows = apart if len(apart) else np.arange(power.shape[1])

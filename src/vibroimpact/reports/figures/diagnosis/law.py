@@ -19,7 +19,7 @@ NARROW_IN = 7.4  # of the figure: its title has room
 DOTS = 1200  # of the demanded law
 BINS, LEAST_IN_BIN = 36, 6
 IN_CONTACT = 0.15  # of the largest force: from it on a place is drawn as pressed
-SCATTER = 4.0  # times the median force, which is scatter where contacts are short
+SCATTER = 4.0  # times the median force, which is scatter if contacts are short
 ALIVE = 0.03  # of the largest force of all places
 CLEARLY = 1.3  # times the gain of the first level
 LARGEST = 0.995  # quantile that stands for the largest
@@ -39,7 +39,7 @@ STATIC = "A static part of motion or force is not measured and is left out of bo
 
 
 def law_figure(evidence: xr.Dataset) -> Plot:
-    """Return the Plot of force against motion at each support that the sensors tell of."""
+    """Return the Plot of force against motion at each support whose force the sensors resolve."""
     evidence = evidence.isel(law_stretch=[telling_level(evidence)])
     told, unseen = _told_places(evidence)
     level = level_in_words(evidence, int(evidence["law_of_stretch"].values[0]))
@@ -85,7 +85,7 @@ def _unseen(evidence, level, unseen):
 
 def telling_level(evidence: xr.Dataset) -> int:
     """Return the number of the level at which the completed model gains most in its forces at all
-    places; the first, where contact is sharpest, unless another gains clearly more.
+    places; the first, with the sharpest contact, unless another gains clearly more.
     """
     levels = range(evidence.sizes["law_stretch"])
     places = list(range(evidence.sizes["place"]))
@@ -142,7 +142,7 @@ def _panels(evidence, told):
 
 
 def _rows(evidence, panels):
-    """Return the rows of keys: a row per support where one has several panels."""
+    """Return the rows of keys: a row per support if one has several panels."""
     rows: dict[str, list[str]] = {}
     for key, places in panels.items():
         rows.setdefault(str(evidence["owner_name"].values[places[0]]), []).append(key)
@@ -197,7 +197,7 @@ def median_law(motion: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 def _orbit_panel(evidence, places, states):
-    """Return the Panel of the places across a support, and of where it is pressed."""
+    """Return the Panel of the motion across a support, with the points at which it is pressed."""
     items = []
     for state, name in states:
         motion, force = (
@@ -217,7 +217,7 @@ def _orbit_panel(evidence, places, states):
 
 
 def pressed(force: np.ndarray) -> np.ndarray:
-    """Return (sample,) bool: where a force (2, sample) in N stands out of its own scatter."""
+    """Return (sample,) bool: whether a force (2, sample) in N stands out of its own scatter."""
     size = np.hypot(*force.astype(float))
     largest = np.quantile(size, LARGEST)
     return size > max(IN_CONTACT * largest, min(SCATTER * np.median(size), 0.5 * largest))

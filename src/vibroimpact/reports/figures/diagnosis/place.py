@@ -20,7 +20,7 @@ from vibroimpact.reports.figures.style import BLACK, BLUE, GREY, ORANGE, PALE
 
 TUBES = ("u_tube", "path")
 LINE_POINTS = 300
-# Height of the figure: of title, labels and legend, beside the structure; least and largest.
+# Height of the figure: of title, labels and legend, without the structure; least and largest.
 AROUND_IN, LEAST_IN, MOST_IN = 1.7, 2.6, 4.4
 ARROW = 0.07  # length of an arrow of a direction, of the largest extent drawn
 # Locations of measuring faults: the forces, the channels, or both.
@@ -29,8 +29,8 @@ FORCES, CHANNELS = ("force", "force_and_responses"), ("responses", "force_and_re
 
 @dataclass(frozen=True)
 class Places:
-    """What is known of where things are, m: line (point, 3) of a tube, None of other structures;
-    supports, points, channels, forces {name: (3,)}; directions {channel or force: (3,)}.
+    """The known positions, m: line (point, 3) of a tube, None for other structures; supports,
+    points, channels, forces {name: (3,)}; directions {channel or force: (3,)}.
     """
 
     line: np.ndarray | None
@@ -54,7 +54,7 @@ class Places:
         return np.array([at[name] + length * self.directions[name] for name in at])
 
     def of(self, effect):
-        """Return [(3,)] where a FoundEffect acts, empty if that is the whole structure."""
+        """Return [(3,)] of the places of a FoundEffect, empty if it acts on the whole structure."""
         location, named = effect.location, self.named()
         if location in named:
             return [named[location]]
@@ -232,7 +232,7 @@ def _directed(sheet, axes, named, directions, seen, look):
 
 
 def _marked(sheet, axes, places, effect, view, columns):
-    """Mark where an effect acts; return its label, None if there is nothing to mark."""
+    """Mark the place of an effect; return its label, None if there is nothing to mark."""
     spots = places.of(effect)
     whole = not spots
     if whole:

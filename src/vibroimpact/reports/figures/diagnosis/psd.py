@@ -17,7 +17,7 @@ from .states import AS_GIVEN, COLOURS, COMPLETED
 
 MOST_RECORDS, CHANNELS_SHOWN = 3, 2
 BELOW = 1.0e-8  # of the largest PSD: the lowest drawn
-LOWEST = 1.0e-5  # of the peak of a measured PSD: what counts as response
+LOWEST = 1.0e-5  # of the peak of a measured PSD: a lower one is no response
 LOWEST_HZ, PASSED = 1.0, 0.78  # drawn from; of the highest line, which a filter has passed
 SI_UNITS = {
     "acceleration": "m s-2",
@@ -57,7 +57,7 @@ def psd_figure(psd: xr.Dataset, verdict: Verdict) -> Plot:
 
 
 def _title(misfit: Misfit | None, completed: bool) -> str:
-    """Return the misfit of the records that took no part, before and after."""
+    """Return the misfit of the held-out records, before and after."""
     if misfit is None or misfit.before_dB is None:
         return "Spectra of free runs"
     told = [f"{misfit.before_dB:.2g} dB"]
@@ -68,9 +68,9 @@ def _title(misfit: Misfit | None, completed: bool) -> str:
 
 
 def _gap(psd):
-    """Return (record, channel) dB: RMS of measured over simulated PSD with the model as given,
-    where the measured one is no more than LOWEST below its peak; 0 of channels that hardly move,
-    measured or simulated, beside others of their kind.
+    """Return (record, channel) dB: RMS of measured over simulated PSD with the model as given, at
+    lines above LOWEST of the measured peak; 0 for channels that hardly move, measured or simulated,
+    compared with others of their kind.
     """
     values = np.maximum(psd["psd"].values[:2].astype(float), np.finfo(float).tiny)
     apart = 10.0 * np.log10(values[0] / values[1])

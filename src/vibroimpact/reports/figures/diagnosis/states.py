@@ -19,7 +19,7 @@ def empty_plot(name: str, title: str, why: str) -> Plot:
 
 
 def shown_states(evidence: xr.Dataset) -> list[tuple[int, str]]:
-    """Return [(index of the state, its name)]: the model as given, and the completed one where
+    """Return [(index of the state, its name)]: the model as given, and the completed one if
     something was added.
     """
     added = evidence.attrs.get("before") != evidence.attrs.get("after")

@@ -1,1 +1,1 @@
-"""The figures of a discrepancy: where it is, what explains it, and a first look at a campaign."""
+"""The figures of a discrepancy: its place, its explanation, and a first look at a campaign."""

@@ -1,4 +1,4 @@
-"""A plot of a page: what plotly.js draws for each position of the controls of the page."""
+"""A plot of a page: a figure of plotly.js for each position of the controls of the page."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class PagePlot:
         return not all(panel.is_empty() for panel in self.frames.values())
 
     def drawn(self) -> dict[str, Any]:
-        """Return what the page's script needs, as plain values."""
+        """Return the input of the page's script, as plain values."""
         kept = {key: panel for key, panel in self.frames.items() if not panel.is_empty()}
         frames = {key: traces_of(panel) for key, panel in kept.items()}
         panels = list(self.frames.values())
@@ -304,7 +304,7 @@ def _layout(
 
 
 def _axis(axis: Axis, frames: Mapping[str, list[dict]], letter: str) -> dict[str, Any]:
-    """Return an axis with its title, a light grid and, where it is logarithmic, its ticks."""
+    """Return an axis with its title, a light grid and, if it is logarithmic, its ticks."""
     drawn: dict[str, Any] = {
         "title": {"text": _title(axis), "standoff": 8},
         "gridcolor": GRID,

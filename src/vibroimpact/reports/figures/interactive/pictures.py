@@ -18,7 +18,7 @@ COLOURS = 256
 
 
 def pictures(paths: Iterable[str | Path], captions: Mapping[str, Caption]) -> list[Picture]:
-    """Return the Pictures of PNG files, each with its .txt file beside it, in their order.
+    """Return the Pictures of PNG files, each with its .txt file next to it, in their order.
 
     captions: {stem of the file: Caption}.
 

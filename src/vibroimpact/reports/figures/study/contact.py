@@ -45,7 +45,7 @@ WAYS = {
     "lobes": "along the direction of the first land",
 }
 STIFFNESS = np.logspace(0.0, 11.0, 89)  # N/m per support
-# A range belongs to a limit where the frequency is within this share of the distance to the next.
+# A range belongs to a limit if the frequency is within this share of the distance to the next.
 NEAR = 0.05
 
 

@@ -28,11 +28,11 @@ from .support_views import (
 SHOWN_MODES = 6
 STILL = 1e-6  # a mode that moves less per radian of twist, over the length of the tube, only twists
 SHAPE_SIZE = 0.22  # largest drawn displacement, as a fraction of the tube's largest extent
-# Labels of the front view: the longest line of a name, and lengths in inches of a character, of
-# the space beside the tube and of the width of the panel.
+# Labels of the front view: the longest line of a name, and lengths in inches of a character, of the
+# space next to the tube and of the width of the panel.
 LINE = 14
 CHARACTER_IN, LABEL_OFFSET_IN, FRONT_IN = 0.06, 0.2, 4.1
-# Where the line to its place leaves a label.
+# The point of a label at which the line to its place begins.
 RELATIVE = {"left": (0.0, 0.5), "right": (1.0, 0.5), "center": (0.5, 0.5)}
 FEW, FONT_PT, SMALL_FONT_PT = 6, 8.5, 7.0  # supports that are named in the usual size of letters
 OBLIQUE = (0.75, 0.45)  # how a unit away from the reader is seen: right and up
@@ -58,7 +58,7 @@ def towards_reader(view):
 
 
 def seen_obliquely(points, view):
-    """Return (point, 2) m: points (point, 3) as the reader sees them, what is far to the right and
+    """Return (point, 2) m: points (point, 3) as the reader sees them, distant ones to the right and
     up.
     """
     away = -towards_reader(view) * np.asarray(points)[..., [view[2]]]
@@ -196,8 +196,8 @@ def _front_view(sheet, axes, config, structure):
 
 
 def _leave_room_for_names(axes, line, labels):
-    """Set the limits around a line (point, 2), with room for the labels beside it, or above and
-    below; a straight tube gets a width to stand in.
+    """Set the limits around a line (point, 2), with room for the labels on either side, or above
+    and below; a straight tube gets a width to stand in.
     """
     low, high = line.min(axis=0), line.max(axis=0)
     extents = high - low
@@ -218,7 +218,7 @@ def _leave_room_for_names(axes, line, labels):
 
 
 def wrapped(name):
-    """Return a name in lines of a length that finds room beside the tube, broken at underscores."""
+    """Return a name in lines short enough for the space next to the tube, broken at underscores."""
     lines = [""]
     for part in re.split(r"(?<=[_. -])", name):
         for piece in textwrap.wrap(part, LINE, drop_whitespace=False) or [""]:
@@ -320,7 +320,7 @@ def _draw_points(sheet, axes, config, structure, view, columns):
         ]
         outward = spot - centre[list(view[:2])]
         outward = outward - (outward @ tangent) * tangent
-        if np.linalg.norm(outward) < 1e-6:  # a straight tube has no outside: beside it
+        if np.linalg.norm(outward) < 1e-6:  # a straight tube has no outside: to its side
             outward = np.array([tangent[1], -tangent[0]])
         outward = outward / np.linalg.norm(outward)
         lines = [wrapped(", ".join(names))]
@@ -348,8 +348,8 @@ def _draw_points(sheet, axes, config, structure, view, columns):
 
 
 def _direction(axes, spot, direction, view):
-    """Draw a force as an arrow; along the line of sight as a circle, with a dot where it points
-    towards the reader and a cross where away.
+    """Draw a force as an arrow; along the line of sight as a circle, with a dot if it points
+    towards the reader and a cross if away.
     """
     direction = direction / np.linalg.norm(direction)
     inside = direction[list(view[:2])]
