@@ -101,7 +101,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def as_text(found: Stability, most: int) -> str:
-    """Return the worst mode of each velocity, with so many supports not holding, as text."""
+    """Return the worst mode of each velocity as text, with up to `most` supports not holding."""
     cells: list[tuple[str, ...]] = [HEADER]
     for velocity in dict.fromkeys(row.velocity for row in found.rows):
         for inactive in range(most + 1):

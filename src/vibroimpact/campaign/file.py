@@ -82,7 +82,7 @@ ABOUT = {
 }
 LARGEST = 1.0e15  # of any unit; larger samples, such as the fill values of netCDF, are none
 SYNTHETIC = "simulated"  # how the source of a campaign without measurements begins
-SAME_POINT_M = 5.0e-3  # largest distance of a channel from the point it stands for
+SAME_POINT_M = 5.0e-3  # largest distance of a channel from its nominal point
 PARALLEL = 0.99  # least |cosine| between the direction of a channel and the one asked for
 
 

@@ -198,7 +198,7 @@ def campaign_signals(campaign: xr.Dataset) -> CampaignSignals:
 
 def blows(force: np.ndarray) -> int:
     """Return how many blows of a hammer a force (time,) consists of, 0 if it does not: it is at
-    rest but for few samples. Between blows a window may have set it to exact zeros.
+    rest except for a few samples. Between blows a window may have set it to exact zeros.
     """
     if not np.isfinite(force).any():
         return 0

@@ -1,7 +1,7 @@
-"""Stated keys that act on nothing as the others stand: each is a sentence with the remedy.
+"""Stated keys without effect given the others: each is a sentence with the remedy.
 
-They are looked for before a study runs, not when a configuration is read: laws that are moved
-through 0 are valid.
+They are sought before a study runs, not when a configuration is read: laws that are moved through 0
+are valid.
 """
 
 from __future__ import annotations

@@ -22,7 +22,7 @@ from vibroimpact.reduction.modal_model import ModalModel
 from .support_directions import plate_shapes
 
 STEPS_PER_DECADE = 24  # of the stiffnesses at which the linear tube is computed
-LOWEST_SHARE = 1.0e-6  # of the contact stiffness; a softer support is none
+LOWEST_SHARE = 1.0e-6  # of the contact stiffness; a softer support counts as none
 
 
 @dataclass(frozen=True)
@@ -69,9 +69,9 @@ class HeldTube:
 def held_tube(model: ModalModel, band_Hz: Sequence[float]) -> HeldTube:
     """Return the HeldTube of a model under a force of flat PSD in a band.
 
-    The displacement is the root mean square over the plates of that of the middle of each; the
-    damping is modal. Its integral over the band is in closed form (band_power). Values are NaN
-    if a mode is overdamped.
+    The displacement is the root mean square over the plates of each one's mean; the damping is
+    modal. Its integral over the band is in closed form (band_power). Values are NaN if a mode is
+    overdamped.
     """
     contact = max(np.bincount(model.support_of_point, model.contact_stiffness))
     decades = int(np.ceil(-np.log10(LOWEST_SHARE)))

@@ -20,8 +20,8 @@ class Reading:
 
     span: value with its interval.
     bracket: the neighbouring levels, the nearest of all gaps.
-    gaps: (gap,) m, those that the value comes from. blocked: those that reach the level, but are
-        not resolved there.
+    gaps: (gap,) m, sources of the value. blocked: gaps that reach the level, but are not resolved
+        there.
     ratio: largest over smallest value of these gaps.
     rows: the rows that were interpolated, or that stood in the way.
     """

@@ -29,7 +29,7 @@ PASSES = 8  # iterations of a cycle's shape and its springs; three agree to a pe
 class ModelInFlow:
     """A reduced model whose rows of the fluid-elastic force were made at the velocity `acting`.
 
-    highest: m/s, up to which critical velocities are looked for.
+    highest: m/s, up to which critical velocities are sought.
     """
 
     model: ModalModel

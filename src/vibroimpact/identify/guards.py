@@ -101,7 +101,7 @@ def _without_value(estimate: Estimate, reason: str) -> Estimate:
 
 
 def few_averages(averages: float) -> str:
-    """Return why a spectrum of so many degrees of freedom is flagged, or an empty text."""
+    """Return why a spectrum with few degrees of freedom is flagged, or an empty text."""
     if averages >= FEWEST_AVERAGES:
         return ""
     return (
@@ -111,7 +111,7 @@ def few_averages(averages: float) -> str:
 
 
 def outside_search(frequency: float, search_Hz: Sequence[float]) -> str:
-    """Return that a pole lies outside the band in which the main peak was looked for, or nothing.
+    """Return that a pole lies outside the band in which the main peak was sought, or nothing.
 
     frequency: Hz, NaN for no pole.
     """

@@ -125,7 +125,7 @@ def match_shape(
     response: FamilyResponse of the line's points on the bins of the spectra.
     mode_shapes: (k (k,) N/m, the first mode's shapes (k, line_point)), at which the search starts.
     member: function (ln k, errors = 0) -> (k in N/m, c in N s/m) of the member with about that k
-        and the damping of the peak, plus so many of its standard errors.
+        and the damping of the peak, plus `errors` of its standard errors.
     """
     low, high = measured.band_Hz
     inside = (response.frequency >= low) & (response.frequency <= high)
@@ -178,7 +178,7 @@ def _change_with_damping(
     slope: np.ndarray,
     strength: float,
 ) -> float:
-    """Return the change of ln k when the peak's damping is so many standard errors higher."""
+    """Return the change of ln k when the peak's damping is `errors` standard errors higher."""
     moved = np.vdot(slope, _phase_aligned(family.shape(log_k, errors), middle)).real / strength
     return np.log(abs(member(log_k, errors)[0] / member(log_k)[0])) - moved
 

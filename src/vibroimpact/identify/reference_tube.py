@@ -223,7 +223,7 @@ class ReferenceTube:
         """Return the function (ln k, errors = 0) -> (k, c) of members with the peak's damping.
 
         The first pole has the frequency of the tube with this k and c = 0, and the damping ratio
-        plus so many times its standard error. The k returned is near the one given.
+        plus `errors` times its standard error. The k returned is near the one given.
         """
 
         def member(log_k, errors=0.0):

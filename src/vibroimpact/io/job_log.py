@@ -14,7 +14,7 @@ def run_job(stage: Callable[..., Stopwatch | None], job: Any, *more: Any) -> Non
     """Run a stage as a job; its log ends with the CPU seconds of the job.
 
     stage: called with the job's input, output and params, and more arguments.
-    job: has the attributes input, output, params and log, of which log[0] is the path.
+    job: has the attributes input, output, params and log; log[0] is the path.
     """
     redirect_output(job.log[0])
     parts = stage(job.input, job.output, job.params, *more)

@@ -56,7 +56,7 @@ def basis_frequency_errors(config: ConfigPart) -> list[dict[str, Any]]:
     group: number of the uncoupled group of degrees of freedom;
     mode: number of the mode in its group, from 1;
     full_Hz, reduced_Hz: frequencies up to 400 Hz; NaN if the basis has fewer modes;
-    relative_error: positive, because a Ritz basis can only stiffen, but for the round-off of the
+    relative_error: positive, because a Ritz basis can only stiffen, up to the round-off of the
         full eigenvalues (about 1e-8). 0 for rigid motion that is rigid on the basis too.
 
     Empty for a structure that is no tube: all modes are in the model, or the user's matrices set

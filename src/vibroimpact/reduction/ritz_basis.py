@@ -223,7 +223,7 @@ def _added_shapes(
     # `added` is stiffness-orthonormal: the eigenvalues of its mass are 1/omega², so the lowest
     # frequencies lose no accuracy.
     flexibility, rotation = np.linalg.eigh(added.T @ group.mass @ added)
-    # Rigid motion that no free mode holds is here, at zero but for round-off.
+    # Rigid motion that no free mode holds is here, at zero up to round-off.
     omega = np.sqrt(np.maximum(1.0 / flexibility[::-1] - group.shift, 0.0))
     return omega, added @ (rotation / np.sqrt(flexibility))[:, ::-1]
 

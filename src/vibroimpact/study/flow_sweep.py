@@ -36,7 +36,7 @@ from .simulation import imperfection, record_dataset, seed_forces
 STARTS = {"small": 0.0, "large": 3.0}  # gaps that the lowest mode would reach without stops
 ONSET = 1.25  # times the response without flow: beyond the scatter of a record, 7 to 14 %
 AMPLITUDES = np.array([1.02, 1.05, 1.1, 1.2, 1.35, 1.5, 1.75, 2.0, 2.5, 3.0])  # of cycles, in gaps
-SEARCHED = 3.0  # times the highest velocity, up to which critical velocities are looked for
+SEARCHED = 3.0  # times the highest velocity, up to which critical velocities are sought
 
 
 @dataclass(frozen=True)

@@ -238,7 +238,7 @@ def counted(texts: Sequence[str]) -> str:
 
 
 def collapse_rows(summary: list[dict], points_per_gap: int = 2) -> list[dict]:
-    """Return how well the curves k(load / gap) of the gaps fall on one curve.
+    """Return rows on the collapse of the curves k(load / gap) of the gaps onto one curve.
 
     A structure with impacts is homogeneous of degree one, so that k depends on load / gap alone.
     k_median of each gap is interpolated, linearly in both logarithms and within its own range, at

@@ -15,7 +15,7 @@ from .run_files import CONFIG_FILE, PROVENANCE_FILE
 
 # Global attributes of a record: the digests of its simulation, and of its model.
 SIMULATED, MODEL_DIGEST = "config_digest", "model_digest"
-SIMULATING = ("simulate", "simulate_to_spectra")  # the stages of which one makes the records
+SIMULATING = ("simulate", "simulate_to_spectra")  # one of these stages makes the records
 
 
 def other_configuration(path: Path, beside: Path) -> str:

@@ -152,7 +152,7 @@ class _Pair:
         self.logarithms, self.means = (own.logarithm, other.logarithm), (own.mean, other.mean)
 
     def weights(self, channel: int, other: int) -> np.ndarray:
-        """Return (line,) how far a channel, and one in the other record, follow their force."""
+        """Return (line,) the product of the coherences of a channel and one in the other record."""
         return self.coherence[channel] * self.other_coherence[other]
 
     @cached_property
@@ -195,8 +195,8 @@ class _Pair:
         return own - float(np.median(others))
 
     def distance(self, channel: int, other: int) -> float:
-        """Return how far the gains of a channel are from those of one in the other record: 0 for
-        equal, 1 for opposite ones.
+        """Return the distance of the gains of a channel from those of one in the other record: 0
+        for equal, 1 for opposite ones.
         """
         shift = self.logarithms[0][channel] - self.logarithms[1][other]
         one, two = self.h1[channel] * np.exp(np.clip(shift, -300.0, 300.0)), self.other_h1[other]

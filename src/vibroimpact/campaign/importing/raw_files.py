@@ -111,7 +111,7 @@ def _measured(folder: Path, inside: list[Path], wanted: Collection[str] | None) 
 
 
 def absence(path: Path) -> str:
-    """Return why a file that is wanted is not among those that are read."""
+    """Return why a wanted file is not read."""
     if ".." in path.parts:
         return "is outside the folder: put a copy into it, only its own files are read"
     if path.is_dir():

@@ -16,7 +16,7 @@ from vibroimpact.io.units import UnitError, si_factor
 from .raw_files import absence
 from .sidecar import DIRECTIONS, NAME, Record, Sensor, Sidecar
 
-NOWHERE = (np.nan, np.nan, np.nan)  # an acceleration of the base is that of no point
+NOWHERE = (np.nan, np.nan, np.nan)  # an acceleration of the base has no point
 
 
 @dataclass(frozen=True)
@@ -174,7 +174,7 @@ def _signal_of(
 ) -> Signal | None:
     """Return the Signal of a sensor, (name, role), in a record; None after adding to problems.
 
-    Of several that are called so, it is the one that the file says is of that role.
+    Of several signals with this name, it is the one with that role in the file.
     """
     known: list[Signal] = []
     place = measured.folder / NAME
@@ -210,7 +210,7 @@ def _signal_of(
 
 
 def _shared_signals(sensors: list[ResolvedSensor]) -> Iterable[str]:
-    """Yield a sentence for each signal that two sensors stand for."""
+    """Yield a sentence for each signal that two sensors share."""
     for record in zip(*(sensor.signals for sensor in sensors), strict=True):
         taken: dict[tuple[str, str], str] = {}
         for sensor, signal in zip(sensors, record, strict=True):

@@ -124,8 +124,8 @@ def read_datasets(path: str | Path) -> tuple[list[int], dict[int, dict]]:
 
 
 def _label_of_unit(header):
-    """Return {key of pyuff: label} of a unit that is not written in UTF-8, of which pyuff keeps no
-    letter; an empty dict for others.
+    """Return {key of pyuff: label} of a unit that is not written in UTF-8, whose letters pyuff
+    drops; an empty dict for others.
 
     It is read as Windows-1252, in which µ and ² are the bytes that they are in Latin-1.
     """

@@ -37,7 +37,7 @@ from .stated import check_mean, check_names, default_band, laws_of, own_units, p
 from .trial import LocalTerm, Records, Trial
 from .updated_model import configuration_text, location
 
-MISSED = 0.5  # of the response of the lowest level: a linear model that misses more is none
+MISSED = 0.5  # of the response of the lowest level: a linear model that misses more is refused
 PREDICTION = ("level", "split", "channel", "error_linear", "error_refitted", "error_completed")
 
 

@@ -1,12 +1,12 @@
 """Linear models of a campaign: modes identified at its lowest level, again at each, and at all
 together; and the places at which the structure changes with the level.
 
-Places, relative displacements at which a law may act, are ranked by how well a bilateral support
-(k, c) of its own per level explains all levels. Between two points with the relative displacement w
-it exerts -(k w + c w'); at the lowest level k = c = 0. Modes, shapes and the (k, c) of all levels
-are fitted together: frequencies and shapes that the support moves determine w better than the small
-difference of two measured shapes. Source: the family of linear models of Thenint, Balmes, Corus
-2012, section 4.
+Places, relative displacements at which a law may act, are ranked by the misfit of a bilateral
+support there, with one (k, c) per level, over all levels. Between two points with the relative
+displacement w it exerts -(k w + c w'); at the lowest level k = c = 0. Modes, shapes and the (k, c)
+of all levels are fitted together: frequencies and shapes that the support moves determine w better
+than the small difference of two measured shapes. Source: the family of linear models of Thenint,
+Balmes, Corus 2012, section 4.
 """
 
 from __future__ import annotations

@@ -58,7 +58,7 @@ class ContactPoint:
             )
 
     def land_gap(self, normal: np.ndarray) -> float:
-        """Return how far the tube moves along a land's normal until it touches it, m."""
+        """Return the travel of the tube along a land's normal until it touches, m."""
         return self.gap + float(normal @ self.offset)
 
 
@@ -82,7 +82,7 @@ class ContactSet:
 def contact_set(config: Config, model: ModalModel, gap_m: float) -> ContactSet:
     """Return the ContactSet of a configuration at a gap of the case in m.
 
-    model: of the configuration. Raises EquivalentError for a support that no format can say.
+    model: of the configuration. Raises EquivalentError for a support that no format can express.
     """
     if not np.any(model.contact_position):
         raise EquivalentError(

@@ -10,7 +10,7 @@ from ..export_formats.unit_system import UnitSystem, unit_system
 from . import abaqus, code_aster, opensees
 from .points import ContactSet
 
-# format -> (its text, laws that it does not have)
+# format -> (its text, laws that it lacks)
 FORMATS: dict[str, tuple[Callable[[ContactSet, UnitSystem, int], str], tuple[str, ...]]] = {
     "abaqus": (abaqus.text, ("damping", "friction")),
     "opensees": (opensees.text, ("damping", "friction")),
@@ -27,7 +27,7 @@ def contacts_text(
     form: one of FORMATS. unit: "m" for m, N, kg, s or "mm" for mm, N, t, s.
     first_number: first number or tag of nodes and elements, if the format has them.
 
-    Raises EquivalentError for another format or unit, and for holes that the format has not.
+    Raises EquivalentError for another format or unit, and for holes that the format lacks.
     """
     if form not in FORMATS:
         raise EquivalentError(f"format '{form}' is none of {', '.join(FORMATS)}")

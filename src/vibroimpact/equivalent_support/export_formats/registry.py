@@ -29,8 +29,8 @@ def springs_text(
     form: one of FORMATS. unit: "m" for m, N, kg, s or "mm" for mm, N, t, s.
     first_number: first number or tag of nodes and elements, if the format has them.
 
-    Raises EquivalentError for another format or unit, and if two supports have the same name but
-    for letters that a format does not know.
+    Raises EquivalentError for another format or unit, and if two supports have the same name in the
+    letters of a format.
     """
     if form not in FORMATS:
         raise EquivalentError(f"format '{form}' is none of {', '.join(FORMATS)}")

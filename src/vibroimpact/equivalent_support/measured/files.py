@@ -45,7 +45,7 @@ def _with_records(found: MeasuredSupports) -> Rows:
 
 
 def _levels(rows: Rows, levels: str) -> Rows:
-    """Return rows whose level stands in its own column."""
+    """Return rows with the level in its own column."""
     if levels == LOAD:
         return rows
     unknown = {"load_rms_N": np.nan, "load_over_gap": np.nan}

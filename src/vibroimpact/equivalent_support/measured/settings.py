@@ -26,7 +26,7 @@ REFERENCES = 2
 # Bands if the model states none: from a part of the first frequency of the free tube to a multiple
 # of the highest main peak of all records.
 LOW, SEARCH, LSCF, BROADBAND = 0.6, 1.4, 1.9, 3.0
-BEYOND = 1.3  # of the first frequency of the held tube: no main peak is looked for above
+BEYOND = 1.3  # of the first frequency of the held tube: no main peak is sought above
 
 
 def measured_settings(

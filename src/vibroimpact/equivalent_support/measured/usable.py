@@ -22,7 +22,7 @@ MOST_NAMED = 6
 def identification_problems(config: Config, campaign: xr.Dataset) -> list[str]:
     """Return sentences on why a campaign, whose signals are not read, gives no supports of a model.
 
-    campaign: Dataset that keeps the contract but for the force.
+    campaign: Dataset that keeps the contract except for the force.
     """
     kind = config.structure.kind
     if kind not in TUBES:

@@ -15,7 +15,7 @@ OPEN = 3.0  # reach if stops leave a side open, as a multiple of the farthest st
 
 
 def radial_gap(profile: ConfigPart, gap_m: float, angle: np.ndarray) -> np.ndarray:
-    """Return (angle,) m: how far the tube moves from the obstacle's centre until it touches.
+    """Return (angle,) m: the travel of the tube from the obstacle's centre until it touches.
 
     profile: of a support.
     gap_m: its gap, m; between flat stops it may be 0 or negative.

@@ -194,5 +194,5 @@ def deepest(rows: Sequence[WearRow]) -> Iterator[list[WearRow]]:
 
 
 def wear_rank(rows: Sequence[WearRow]) -> tuple[float, float]:
-    """Return the rank of the rows of a land: by depth, then by how soon the limit is reached."""
+    """Return the rank of the rows of a land: by depth, then by the time to the limit."""
     return max(row.depth_m for row in rows), -min(row.years_to_limit for row in rows)

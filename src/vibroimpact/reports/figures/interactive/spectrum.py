@@ -134,7 +134,7 @@ def spectrum_plot(
     frequency, spectra: of spectra_of_sensor.
     places: (key of the frame, (gap, load)).
     band_Hz: the band that is shown.
-    over: of which the mean is taken.
+    over: the things that the mean is over.
     """
     edges = blocks_of(frequency, band_Hz)
     sizes = np.diff(edges)

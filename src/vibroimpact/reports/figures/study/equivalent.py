@@ -163,7 +163,7 @@ def _why_empty(rows):
 
 
 def _across(count):
-    """Return how many of some pairs of panels stand side by side."""
+    """Return the number of pairs of panels in a row."""
     return -(-count // -(-count // MOST_COLUMNS))
 
 
@@ -247,7 +247,7 @@ def collapse(config, model, rows):
 
 
 def _collapse_title(rows):
-    """Return the title of the figure: how far the curves of the gaps are apart."""
+    """Return the title of the figure: the distance between the curves of the gaps."""
     ratios = [
         row["k_ratio"]
         for row in collapse_rows(summary_rows(rows))
