@@ -29,8 +29,8 @@ SIGNATURES = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF")
 def main(arguments: Sequence[str] | None = None) -> int:
     """Return the exit code of a command: 0 for success, 1 for a file with problems.
 
-    arguments: those of the command line if None. Raises SystemExit with code 2 for arguments
-    that are no command.
+    arguments: those of the command line if None. Raises SystemExit with code 2 for arguments that
+    are not a command.
     """
     for name, value in ONE_THREAD.items():
         os.environ.setdefault(name, value)

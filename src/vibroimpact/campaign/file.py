@@ -386,7 +386,7 @@ def _with_real_signals(campaign: xr.Dataset) -> xr.Dataset:
 def load_of(force: np.ndarray, rate: float, band_Hz: tuple[float, float] | None = None) -> float:
     """Return the load of a record: the RMS of its force (time,) about the mean, in its unit.
 
-    A constant reading, such as the offset of an amplifier, is no load. NaN if all samples are
+    A constant reading, such as the offset of an amplifier, is not a load. NaN if all samples are
     missing; others that are missing are left out.
 
     rate: Hz.

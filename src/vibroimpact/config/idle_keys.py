@@ -90,7 +90,7 @@ def _exerts_a_force(element) -> bool:
 
 
 def _apart(element: Any, partner: Any) -> str:
-    """Return why an element is no partner of another's drag, "" if it is."""
+    """Return why an element is not a partner of another's drag, "" if it is."""
     if (element.point, element.other_point) != (partner.point, partner.other_point):
         return f"acts at another point, '{partner.point}'"
     one, other = element.direction, partner.direction

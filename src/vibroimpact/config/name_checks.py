@@ -205,7 +205,7 @@ def grouped_supports_are_there(
 
 
 def point_supports(structure: Structure, supports: Sequence[Support]) -> Problems:
-    """Yield a problem unless supports of a structure that is no tube are at its points."""
+    """Yield a problem unless supports of a structure other than a tube are at its points."""
     for index, support in enumerate(supports):
         if support.point is None or support.at_m is not None:
             yield (
@@ -230,7 +230,7 @@ def same_stop_twice(structure: Structure, supports: Sequence[Support]) -> Proble
 
 
 def places_of_points(structure: Structure, points: Mapping[str, Sequence[float]]) -> Problems:
-    """Yield a problem unless places are those of points that a structure, which is no tube, has."""
+    """Yield a problem unless places are those of points that a structure other than a tube has."""
     names = names_of_points(structure, points)
     for name, place in points.items():
         if name not in names:

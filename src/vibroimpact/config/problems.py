@@ -157,8 +157,8 @@ def _holds(data: Any, part: Any) -> bool:
 def _resolve(location: tuple, data: Any, whole: type[Section] = Config) -> _Place:
     """Return the place that a pydantic location means in `data`.
 
-    Pydantic's location also names the member of a union. Such a part is no key of the data and is
-    left out of the path.
+    Pydantic's location also names the member of a union. Such a part is not a key of the data and
+    is left out of the path.
     """
     model: type[Section] | None = whole
     annotation: Any = None

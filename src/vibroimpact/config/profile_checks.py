@@ -107,7 +107,7 @@ def _across(
 
     at_m: position of the support on the centreline.
     """
-    tangent = np.array([0.0, 0.0, 1.0])  # a structure that is no tube has contact along x and y
+    tangent = np.array([0.0, 0.0, 1.0])  # a structure other than a tube has contact along x and y
     if centreline is not None:
         if at_m is None or any(off_the_tube(centreline, place, at_m)):
             return

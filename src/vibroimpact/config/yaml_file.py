@@ -60,7 +60,7 @@ ELSE = "check indentation, colons, brackets and quotes there"
 def read_yaml(path: str | os.PathLike[str]) -> dict[str, Any]:
     """Return the mapping in a YAML file.
 
-    Raises ConfigError when the file can not be read, is no UTF-8 text, is not YAML, holds a key
+    Raises ConfigError when the file can not be read, is not UTF-8 text, is not YAML, holds a key
     twice or no keys at all, is larger than a configuration can be (see yaml_loader), or asks for
     templates, which run code. The sentence gives the line and the column if there is one.
     """

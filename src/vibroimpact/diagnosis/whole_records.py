@@ -133,5 +133,5 @@ def holder(structure: Structure, signals: Signals, point: Point) -> Holder:
 
 
 def first_mode_Hz(model: ModalModel) -> float:
-    """Return the lowest frequency of the modes that are no rigid motion, Hz."""
+    """Return the lowest frequency of the modes that are not rigid motion, Hz."""
     return float(model.frequencies[model.frequencies > 0.1].min())

@@ -142,7 +142,7 @@ def members(group: str, direction: str, model: ModalModel) -> tuple[str, ...]:
 
     group: "all", the name of a support, or names joined by "+", as in plate_1+plate_2.
 
-    Raises EquivalentError for a name that is no support, and if none acts in the direction.
+    Raises EquivalentError for a name that is not a support, and if none acts in the direction.
     """
     wanted = model.support_names
     if group != "all":

@@ -60,8 +60,8 @@ def force_vector(
 def turn_axis(config: ConfigPart, position: Sequence[float] | np.ndarray) -> np.ndarray:
     """Return the unit vector (3,) about which the force at a position (3,) in m is turned.
 
-    It is z, or the tangent of the tube there. Raises ValueError for the tangent of a structure that
-    is no tube, or off it.
+    It is z, or the tangent of the tube there. Raises ValueError for the tangent of a structure
+    other than a tube, or off it.
     """
     if getattr(config.excitation, "turn_about", "z") == "z" or config.excitation.turn_deg == 0.0:
         return np.array([0.0, 0.0, 1.0])
@@ -97,7 +97,7 @@ def line_load(structure: TubeStructure | PointStructure, load: ConfigPart) -> np
     """Return (dof,) the consistent nodal force of 1 N/m between two places of the tube.
 
     It acts along load.direction, from load.from_m to load.to_m. Each stretch between nodes has four
-    Gauss points. Raises ValueError when a place is off the tube or the structure is no tube.
+    Gauss points. Raises ValueError when a place is off the tube or the structure is not a tube.
     """
     if not isinstance(structure, TubeStructure):
         raise ValueError(

@@ -41,7 +41,7 @@ def drive_shapes(
     omega: (mode,) rad/s, ascending.
     force: section of the configuration, of kind turbulence.
 
-    Raises ValueError when the structure is no tube, or a stretch is off it.
+    Raises ValueError when the structure is not a tube, or a stretch is off it.
     """
     if not isinstance(structure, TubeStructure):
         raise ValueError("excitation.kind: turbulence needs a tube (structure.kind u_tube or path)")

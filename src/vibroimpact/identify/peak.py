@@ -19,7 +19,7 @@ from vibroimpact.identify.spectra.window_leakage import SpectralKernel, correlat
 from .segment_scatter import widened
 
 LEVELS = {"peak_half": 2.0, "peak_quarter": 4.0, "peak_25th": 25.0}
-SMALLEST_RATIO, LARGEST_RATIO = 1.0e-4, 0.5  # damping ratios beyond which a peak is no resonance
+SMALLEST_RATIO, LARGEST_RATIO = 1.0e-4, 0.5  # damping ratios beyond which a peak is not a resonance
 # The weight is zero below S_peak / FARTHEST, where other modes and the sensors' noise dominate.
 FARTHEST = 50.0
 FEWEST_BINS = 7

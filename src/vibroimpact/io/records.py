@@ -22,8 +22,8 @@ from .whole_file import MAKE_AGAIN, RecordError, read_text, whole_file
 # The end of a label's name in a file. By the CF conventions (1.11, sections 5 and 6.1) only numbers
 # may carry the name of their dimension, so the names of supports are support_name (support).
 LABEL = "_name"
-# Seconds from the start of a record are no date, which is what a dimension `time` stands for
-# (CF 4.4).
+# Seconds from the start of a record are not a date, which is what a dimension `time` stands for (CF
+# 4.4).
 TIME, TIME_IN_FILE = "time", "elapsed_time"
 HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 HDF5_PLACES = (0, 512, 1024, 2048)
@@ -168,7 +168,7 @@ def _create(file, name, dtype, dims, attributes):
 
 
 def _auxiliary(dataset: xr.Dataset, names: dict[str, str]) -> dict:
-    """Return {name in the file: dimensions} of the coordinates whose name is no dimension's."""
+    """Return {name in the file: dimensions} of the coordinates whose name is not a dimension's."""
     return {
         names.get(str(name), name): set(dataset[name].dims)
         for name in dataset.coords
@@ -177,7 +177,7 @@ def _auxiliary(dataset: xr.Dataset, names: dict[str, str]) -> dict:
 
 
 def _is_text(name: str, values: np.ndarray) -> bool:
-    """Return whether values are texts. Raises TypeError if they are no numbers either."""
+    """Return whether values are texts. Raises TypeError if they are not numbers either."""
     text = values.dtype.kind in "UO" and all(isinstance(value, str) for value in values.flat)
     if not text and values.dtype.kind not in "fiu":
         raise TypeError(f"'{name}' holds {values.dtype}: numbers and texts alone are written")

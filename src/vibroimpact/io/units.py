@@ -91,7 +91,7 @@ def si_factor(units: str, kind: str) -> float:
         voltage or time; "generic" takes any unit, "excitation" takes forces and volts.
 
     For an acceleration "g" is standard gravity, not the gram. Raises UnitError for an empty or
-    unknown unit, for one of another dimension, and for one that is no factor (degC, dB).
+    unknown unit, for one of another dimension, and for one that is not a factor (degC, dB).
     """
     text = units.strip()
     if not text:

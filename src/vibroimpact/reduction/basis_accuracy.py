@@ -59,7 +59,7 @@ def basis_frequency_errors(config: ConfigPart) -> list[dict[str, Any]]:
     relative_error: positive, because a Ritz basis can only stiffen, up to the round-off of the
         full eigenvalues (about 1e-8). 0 for rigid motion that is rigid on the basis too.
 
-    Empty for a structure that is no tube: all modes are in the model, or the user's matrices set
+    Empty for a structure other than a tube: all modes are in the model, or the user's matrices set
     the basis.
     """
     if config.structure.kind not in TUBES:

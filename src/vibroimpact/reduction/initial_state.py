@@ -90,7 +90,7 @@ def _refuse_residual(key: str, residual: float) -> None:
 
 
 def _at_points(structure: Any, initial: ConfigPart, key: str) -> np.ndarray:
-    """Return (dof,) the field of values at named points of a structure that is no tube."""
+    """Return (dof,) the field of values at named points of a structure other than a tube."""
     field = np.zeros(structure.dofs)
     for name, axes in getattr(initial, key).items():
         for axis, value in axes.items():

@@ -200,9 +200,9 @@ class ModalModel:
         """Return [(mode indices (mode,), [(contact_point, direction), ...])]: uncoupled blocks.
 
         Two modes are in the same block when the same contact point and direction, or the same local
-        element, moves in both. A shape of exactly 0.0 is no motion: the reduction treats uncoupled
-        degrees of freedom separately, so zeros are exact. Modes that move no contact point and no
-        element form a last block without contacts.
+        element, moves in both. A shape of exactly 0.0 is not a motion: the reduction treats
+        uncoupled degrees of freedom separately, so zeros are exact. Modes that move no contact
+        point and no element form a last block without contacts.
         """
         points = 2 * self.contact_shapes.shape[1]
         shapes = np.hstack([self.contact_shapes.reshape(self.modes, points), self.element_shapes])

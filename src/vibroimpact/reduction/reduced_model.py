@@ -42,7 +42,7 @@ from .structural_modifications import with_frequency_factors, with_point_masses,
 
 BASES = Memo()
 AXES = dict(zip("xyz", np.eye(3), strict=True))
-MAX_FULL_DOFS = 400  # a structure that is no tube keeps all its modes up to this size
+MAX_FULL_DOFS = 400  # a structure other than a tube keeps all its modes up to this size
 UNHELD = 1.0e-6  # of the largest modal force: more than this on a mode without stiffness pushes it
 ZERO_SQUARE = 1.0e-14  # of the largest squared frequency; below it a mode is rigid-body motion
 
@@ -256,7 +256,7 @@ def _axis(config: ConfigPart) -> Sequence[float] | np.ndarray:
     """Return the axis (3,) about which the force is turned; z if it is not."""
     if not getattr(config.excitation, "turn_deg", 0.0):
         return (0.0, 0.0, 1.0)
-    nowhere = (0.0, 0.0, 0.0)  # of no need for the axis of a structure that is no tube
+    nowhere = (0.0, 0.0, 0.0)  # not used for the axis of a structure other than a tube
     return turn_axis(config, config.points.get(config.excitation.point, nowhere))
 
 
@@ -411,7 +411,7 @@ def named_arc_length(structure: TubeStructure, config: ConfigPart, name: str) ->
 
 def _wanted_sensors(structure: Any, config: ConfigPart) -> list[tuple[str, str]]:
     """Return the (point, direction) of the sensors: those of record.sensors. Without that section,
-    a structure that is no tube has one for every direction of every named point.
+    a structure other than a tube has one for every direction of every named point.
     """
     sensors = config.record.sensors
     if sensors is not None:

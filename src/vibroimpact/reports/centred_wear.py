@@ -27,7 +27,7 @@ def centred_sentence(imperfection: float, offset_m: Any, gap_m: float) -> str:
 
 
 def centred_in(config: Any) -> str:
-    """Return centred_sentence of a configuration, "" if the structure is no tube."""
+    """Return centred_sentence of a configuration, "" if the structure is not a tube."""
     if config.structure.kind not in ("u_tube", "path"):
         return ""
     offsets = [np.ravel(support.centre_offset_m) for support in config.supports]

@@ -19,8 +19,8 @@ from vibroimpact.io.units import SI_OF_KIND, TIME_DERIVATIVES
 from vibroimpact.reduction.modal_model import ModalModel
 
 MANY = 1000  # averages of a frequency response whose number is not stated
-NEGLIGIBLE = 0.01  # of the response of every channel: a pole with less is no mode
-NEAR = 0.3  # relative: a mode of the model that is further off is no partner
+NEGLIGIBLE = 0.01  # of the response of every channel: a pole with less is not a mode
+NEAR = 0.3  # relative: a mode of the model that is further off is not a partner
 COLUMNS = (
     "frequency_Hz",
     "damping_ratio",

@@ -27,7 +27,7 @@ from .definiteness import EPSILON
 
 MOST_DOFS = 4000  # of a structure that is condensed: it takes dense matrices
 SHOWN = 6  # dofs that are named in a message
-ROUND_OFF = 10.0  # times the number of dofs and epsilon: a smaller eigenvalue is no mass
+ROUND_OFF = 10.0  # times the number of dofs and epsilon: a smaller eigenvalue is not a mass
 NO_SHAPE = 1.0e-6  # of the largest: a smaller static shape adds nothing
 
 

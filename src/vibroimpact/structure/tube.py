@@ -111,8 +111,8 @@ class TubeStructure:
         the outward normal (3,), per unit dof.
 
         It is minus the fibre's distance times the curvature of the deflection along the normal; the
-        strain by an axial force is no part of it. A fibre that bulges outwards is stretched. If the
-        section is not round, the normal is one of its axes, of either sense.
+        strain by an axial force is not part of it. A fibre that bulges outwards is stretched. If
+        the section is not round, the normal is one of its axes, of either sense.
         """
         moduli = [plane.fibre_stiffness / plane.outer_fibre for plane in self.beam.planes]
         across = self.section_axes(arc_length) @ unit_vector(normal)

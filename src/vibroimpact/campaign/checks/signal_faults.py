@@ -6,13 +6,13 @@ import numpy as np
 
 TOP_SHARES = (0.01, 0.02, 0.04)  # widths of the bins at the extreme, as shares of it
 FEWEST_AT_TOP = 8  # samples in the outermost bin
-FEWEST_CRESTS = 5  # that they are of: those of one crest are no independent ones
+FEWEST_CRESTS = 5  # that hold them: samples of one crest are not independent
 # Samples in the outermost bin over those in the next one: 3 for a sine, below 1 for random
 # vibration, more than this for a clipped signal.
 PILE_UP = 8.0
 # The extreme value occurs SAME_VALUE times as often as any of its NEIGHBOURS next values.
 SAME_VALUE, NEIGHBOURS = 3, 20
-# A side of a signal that is smaller than this share of the other is no range of an amplifier:
+# A side of a signal that is smaller than this share of the other is not the range of an amplifier:
 # without contact a contact force is noise of a few steps of the converter.
 ONE_SIDED = 0.1
 DROP_OUT_S, DROP_OUT_SAMPLES = 0.01, 8  # a constant value for longer than both is a drop-out

@@ -59,7 +59,7 @@ def cut_records(
     rate: Hz.
 
     Raises ImportProblem for signals that begin between two samples of another, for a cut that the
-    record does not hold and for values that are no measurement.
+    record does not hold and for values that are not measurements.
     """
     records = measured.sidecar.records
     cuts: list[Cut] = []

@@ -116,7 +116,7 @@ def _lines(data, kind, units, path):
     above, _, force = (part.strip("() ") for part in label.rpartition("/"))
     try:
         si_factor(force, "force")
-    except UnitError:  # m/s^2 is no unit per second squared
+    except UnitError:  # m/s^2 is not a unit per second squared
         above, force = label, below
     above = above or unit_of({}, int(data["ordinate_spec_data_type"]), units)[0]
     force = force or unit_of({}, FORCE_TYPES[0], units)[0]

@@ -101,7 +101,7 @@ def evidence_of(
     """Return the evidence for two Trials, the modes of the lowest level and the completed model;
     variables as those of diagnosis.evidence.evidence_of.
 
-    free_error and waveform are of the free response: no sensor is held. If the response is no
+    free_error and waveform are of the free response: no sensor is held. If the response is not a
     motion (mechanical False), quantities with mechanical units are left out.
     """
     held = np.array([level.split == "holdout" for level in records.levels])

@@ -26,7 +26,7 @@ SHARPEST = 0.4  # of the sampling frequency: the end of any band
 
 
 def check_names(stated: MeasuredStructure, campaign: xr.Dataset) -> None:
-    """Raise ConfigError for names that are no channel of the campaign, and places that are not
+    """Raise ConfigError for names that are not channels of the campaign, and places that are not
     given.
     """
     names = [str(name) for name in campaign["channel_name"].values]

@@ -39,7 +39,7 @@ def makes_worse(row: Mapping[str, Any]) -> bool:
 
 
 def not_offered(withdrawn: Mapping[str, Any]) -> str:
-    """Return the text in place of a completed configuration that is no better than the given one;
+    """Return the text in place of a completed configuration that is not better than the given one;
     withdrawn: values of content.Withdrawn.
     """
     effects = effects_in_words(row["id"] for row in withdrawn["effects"])

@@ -16,7 +16,7 @@ HEADER_UNIT = re.compile(r"\s*(.*?)\s*[\[(]\s*([^\])]+?)\s*[\])]\s*")  # acc top
 NUMBER = re.compile(
     r"\s*[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?|inf|infinity|nan)\s*", re.ASCII | re.IGNORECASE
 )
-SHOWN = 5  # cells that are no numbers; more are counted
+SHOWN = 5  # cells that are not numbers; more are counted
 COMMENT = "#%"
 LABVIEW = "LabVIEW Measurement"
 
@@ -27,7 +27,7 @@ def read_csv(path: str | Path) -> list[Signal]:
     One line of names stands above the table, "name" or "name [unit]", as a comment or not; a column
     "time" gives the sampling. The separator is a comma, semicolon, tab or blanks; with a semicolon
     or tab, decimal commas are read. Raises ImportProblem for a table without names, two columns of
-    one name or a cell that is no number.
+    one name or a cell that is not a number.
     """
     numbered, lines, note = _numbered_lines(path)
     separator = next((mark for mark in "\t;," if mark in lines[1][1]), None)
@@ -53,7 +53,7 @@ def read_csv(path: str | Path) -> list[Signal]:
 
 
 def _numbered_lines(path):
-    """Return [(number, line)] of a file, those that are no comment, and a note on its encoding.
+    """Return [(number, line)] of a file, those that are not a comment, and a note on its encoding.
     Raises ImportProblem if there is no table.
     """
     text, note = read_encoded(path)
@@ -70,7 +70,7 @@ def _numbered_lines(path):
 
 
 def _header(path, numbered, lines, separator):
-    """Return the cells of the line of names, which is taken out of lines if it is no comment.
+    """Return the cells of the line of names, which is taken out of lines if it is not a comment.
 
     It is the first line of the table, or the last comment above it if that holds numbers.
     """
@@ -155,7 +155,7 @@ def _numbers(path, lines, columns, separator):
 
 
 def _faults(path, lines, columns, separator):
-    """Return a sentence for each of the first cells that are no numbers and lines too long."""
+    """Return a sentence for each of the first cells that are not numbers and lines too long."""
     faults = []
     names, empty = columns
     for number, line in lines:

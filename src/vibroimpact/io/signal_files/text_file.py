@@ -14,7 +14,7 @@ def read_encoded(path: str | Path) -> tuple[str, str]:
     """Return (text, note) of a file in UTF-8, in UTF 16 with its mark, or else in Windows-1252.
 
     Instruments write µ and ² in the code page of their system. In those of Windows and in Latin-1
-    both are the same bytes, which are no UTF-8; a wrong guess gives a unit or a name that is not
+    both are the same bytes, which are not UTF-8; a wrong guess gives a unit or a name that is not
     known, which is refused. The note says that Windows-1252 was read. Raises ImportProblem for a
     binary file.
     """

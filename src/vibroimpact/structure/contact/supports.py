@@ -96,7 +96,7 @@ def place_contact_points(centreline: Centreline, supports: Sequence[ConfigPart])
 def contacts_at_points(
     supports: Sequence[ConfigPart], points: Mapping[str, Sequence[float]] | None = None
 ) -> ContactPoints:
-    """Return the ContactPoints of supports at named points of a structure that is no tube.
+    """Return the ContactPoints of supports at named points of a structure other than a tube.
 
     Each support is one contact point that acts along x and y. points: {name: (3,)} m. Positions are
     zero unless the place of every support is among them.

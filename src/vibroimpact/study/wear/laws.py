@@ -80,7 +80,7 @@ PAIRS = {
 def published_laws(shape: str) -> Sequence[Archard]:
     """Return Archard's law of each pair of PAIRS for a shape; of all shapes if it has one pair.
 
-    One test of one pair is no range.
+    One test of one pair is not a range.
     """
     shapes = [shape] if len(PAIRS[shape]) > 1 else list(PAIRS)
     return [Archard(k, f"{name}, {pair}") for name in shapes for pair, k in PAIRS[name].items()]

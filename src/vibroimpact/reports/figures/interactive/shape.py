@@ -152,6 +152,6 @@ def contact_along_plot(
 
 
 def _tube_axis(arc_length: np.ndarray) -> Axis:
-    """Return the axis from end to end of the tube, whose ends are no line points."""
+    """Return the axis from end to end of the tube, whose ends are not line points."""
     step = float(arc_length[1] - arc_length[0]) if arc_length.size > 1 else 0.1
     return Axis("arc_length_m", False, arc_length[0] - step, arc_length[-1] + step)
