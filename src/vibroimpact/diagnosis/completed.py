@@ -24,7 +24,7 @@ NINETY_SD = 1.645  # sigma: half width of the 90 % interval of a normal law
 
 def effect_rows(hypothesis: Hypothesis, signals: Signals) -> list[Values]:
     """Return the rows of `effects` of verdict.json: id, family, location, parameters with their 90
-    % intervals: of the fit, and of the difference between two codes.
+    % intervals: of the fit, and of the difference between two codes of the same structure.
     """
     fit = hypothesis.fit
     half = NINETY_SD * fit.deviation

@@ -1,6 +1,6 @@
 """Doubts about an estimate beyond its standard error: the texts of the column `flag`.
 
-A flag does not change a value. Only a run whose energy balance is open has no resolved values. A
+A flag changes no value, except that a run whose energy balance is open has no resolved ones. A
 flagged estimate takes no part in the recommended values. The column `caution` holds remarks on a
 case, whatever the method.
 """

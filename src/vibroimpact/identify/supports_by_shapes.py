@@ -33,7 +33,7 @@ from .support_fit import (
 BLOCK_HZ = 1.0
 FEWEST_BINS = 5
 # Loss factor omega c / k of the supports at the main peak that is expected, and its scatter. A
-# shape hardly determines c: otherwise the expectation decides.
+# shape hardly determines c: the expectation decides then.
 LOSS, LOSS_SCATTER = 0.1, 0.3
 
 

@@ -26,8 +26,8 @@ NO_GAP_M = 1.0  # if a record has no clearance
 class Stretch:
     """A stretch of a record.
 
-    record: its number. start_s: its start. gap: m. load: RMS of the record's first force. force
-    (step, force_channel): N. motion (step, channel): m, as displacements; 0 of channels that
+    record: its number. start_s: its start. gap: m. load: RMS of the record's first force.
+    force (step, force_channel): N. motion (step, channel): m, as displacements; 0 of channels that
     measure no motion. Both begin one step before the start, in steps of the Schedule.
     moving (channel,) bool: whether a channel moves there.
     """
