@@ -26,6 +26,15 @@ def test_a_channel_ten_times_louder_is_ten_decibels_off(compared):
     assert np.median([row["discrepancy_dB"] for row in rows]) == pytest.approx(10.0, abs=3.0)
 
 
+def test_a_run_that_failed_spoils_no_other_record(compared):
+    signals, runs = compared
+    before = runs.before.copy()
+    before[0, 2] = np.nan
+    rows = regions(replace(runs, before=before), signals, 5)
+    assert np.isfinite([row["z"] for row in rows]).all()
+    assert signals.record_names[0] not in {row["record"] for row in rows}
+
+
 def test_a_record_is_off_where_no_run_is_as_far_from_the_others(compared, comparison):
     signals, runs = compared
     given = comparison.structure, signals, Point(), [0]

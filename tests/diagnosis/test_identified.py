@@ -237,7 +237,9 @@ def test_the_documented_stop_is_named(results):
     assert values["stiffness"] == pytest.approx(example.STOP, rel=0.02)
     held = [row for row in read_table(results / "prediction.csv") if row["split"] == "holdout"]
     assert all(float(row["error_completed"]) < 0.1 * float(row["error_refitted"]) for row in held)
-    assert json.loads((results / "verdict.json").read_text())["cost"]["simulations"] > 100
+    cost = json.loads((results / "verdict.json").read_text())["cost"]
+    assert cost["simulations"] > 100
+    assert sum(stage["simulations"] for stage in cost["by_stage"].values()) == cost["simulations"]
 
 
 def test_the_records_demand_the_law_of_the_stop(results):

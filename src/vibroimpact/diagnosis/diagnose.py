@@ -13,7 +13,7 @@ import xarray as xr
 from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.config.measured_structure import MeasuredStructure
 from vibroimpact.config.schema import Config
-from vibroimpact.diagnosis.run_cost import SIMULATED
+from vibroimpact.diagnosis.run_cost import StageCosts
 from vibroimpact.diagnosis.verdict.content import (
     WITH_AMBIGUITY_SET,
     WITH_EFFECTS,
@@ -27,7 +27,6 @@ from vibroimpact.diagnosis.verdict.content import not_testable as not_testable_v
 from vibroimpact.diagnosis.verdict.misfit import makes_worse, not_offered
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.io.records import write_record, write_table, write_text
-from vibroimpact.io.stopwatch import Stopwatch
 
 from .comparison import Comparison
 from .completed import completed_model, effect_rows
@@ -111,32 +110,32 @@ def run_diagnosis(
     config = model_of(model)
     if isinstance(config, MeasuredStructure):
         return _run_identified(campaign, config, EFFORTS[effort], provenance or {}, log)
-    watch, known = Stopwatch(), SIMULATED["records"]
+    costs = StageCosts()
     checks: list[dict[str, Any]] = []
     try:
-        with watch("reading and checks"):
+        with costs("reading and checks"):
             found, checks = usable(campaign, config)
             whole = with_channel_points(config, found)
             comparison = Comparison(signals_of(found), Structure(whole, found), threads=threads)
-        with watch("free runs"):
+        with costs("free runs"):
             runs = free_runs(comparison.structure, comparison.signals, None)
-        with watch("search"):
+        with costs("search"):
             comparison, searched = _searched(comparison, runs, EFFORTS[effort], log)
     except Refused as refusal:
-        return Diagnosis(_refused(refusal, checks, provenance or {}, watch))
-    with watch("floor"):
+        return Diagnosis(_refused(refusal, checks, provenance or {}, costs))
+    with costs("floor"):
         best = max(searched.hypotheses, key=lambda each: each.gain, default=searched.nothing)
         played = searched.floors.get(best.point.name)
         level, floor = played or floor_of(comparison, best.fit)
     decision = decide(searched, level, floor)
-    with watch("free runs"):
+    with costs("free runs"):
         if decision.verdict not in ("none", "unknown") and decision.best is not None:
             point = decision.best.point
             runs = with_after(runs, comparison.structure, comparison.signals, point)
         decision, runs = free_search(comparison, searched, decision, runs, log)
     return _concluded(
         _Found(comparison.signals, searched, decision, runs, checks, provenance or {}, comparison),
-        _cost(watch, SIMULATED["records"] - known),
+        costs.total(),
     )
 
 
@@ -178,24 +177,24 @@ def _run_identified(
     log: Log,
 ) -> Diagnosis:
     """Return the Diagnosis of a structure that is identified from its own records."""
-    watch, known = Stopwatch(), SIMULATED["records"]
+    costs = StageCosts()
     try:
-        with watch("reading, checks and modes"):
+        with costs("reading, checks and modes"):
             own, checks = identified(campaign, stated, log)
             signals = replace(signals_of(own.campaign), band_Hz=own.band_Hz)
-        with watch("search"):
+        with costs("search"):
             searched = search_laws(own.setting, most, log)
             decision = decide(searched, *left_and_floor(own.setting, searched))
             if decision.verdict not in ("none", "unknown"):
                 decision = own.completed(decision, checks)
-        with watch("free runs"):
+        with costs("free runs"):
             chosen = None if decision.verdict in ("none", "unknown") else decision.best
             runs = own.free_runs(chosen)
     except Refused as refusal:
-        return Diagnosis(_refused(refusal, [], provenance, watch), without_model=True)
+        return Diagnosis(_refused(refusal, [], provenance, costs), without_model=True)
     return _concluded(
         _Found(signals, searched, decision, runs, checks, provenance, identified=own),
-        _cost(watch, SIMULATED["records"] - known),
+        costs.total(),
     )
 
 
@@ -284,7 +283,7 @@ def evidence(diagnosis: Diagnosis) -> xr.Dataset:
     return evidence_of(diagnosis.comparison, diagnosis.search.nothing.point, after)
 
 
-def _refused(refusal: Refused, checks, provenance, watch) -> Verdict:
+def _refused(refusal: Refused, checks, provenance, costs) -> Verdict:
     """Return the verdict on a campaign that can not be tested; checks: rows beside those of the
     refusal.
     """
@@ -294,7 +293,7 @@ def _refused(refusal: Refused, checks, provenance, watch) -> Verdict:
         provenance,
         next_measurement=str(refusal),
         misfit=MisfitBySplit(fit=empty, holdout=empty),
-        cost=_cost(watch, 0),
+        cost=costs.total(),
     )
 
 
@@ -488,15 +487,3 @@ def _ranking_table(decision: Decision | None) -> list[dict[str, Any]]:
         }
         for each, chance in decision.ranked
     ]
-
-
-def _cost(watch, simulations):
-    """Return the `cost` of verdict.json."""
-    return {
-        "cpu_seconds": float(sum(watch.values())),
-        "simulations": int(simulations),
-        "by_stage": {
-            stage: {"cpu_seconds": float(seconds), "simulations": 0}
-            for stage, seconds in watch.items()
-        },
-    }

@@ -27,6 +27,7 @@ CHANCE_RUNS = 20  # of a record that seems off: a measurement is the farthest of
 SETTLE_S = 1.0  # at the start of a record
 ABOVE_NOISE_DB = 6.0
 SEGMENT_S = 2.0
+LEAST_SCATTER_DB = 0.5  # between runs of a model, in a band
 
 
 @dataclass(frozen=True, eq=False)
@@ -231,9 +232,9 @@ def regions(runs: FreeRuns, signals: Signals, shown: int) -> list[dict]:
     in units of the scatter between its runs.
     """
     cells = _in_bands(runs, signals)
-    mean = _mean(cells["before"], axis=1)
-    scatter = np.maximum(np.abs(np.diff(cells["before"], axis=1)[:, 0]) / np.sqrt(2.0), 0.5)
-    off = np.where(cells["known"], cells["measured"] - mean, 0.0)
+    known, before = cells["known"], cells["before"]
+    scatter = np.maximum(np.where(known, np.std(before, axis=1, ddof=1), 0.0), LEAST_SCATTER_DB)
+    off = np.where(known, cells["measured"] - _mean(before, axis=1), 0.0)
     z = off / np.hypot(scatter, np.sqrt(np.mean(scatter**2)))
     rows = []
     for flat in np.argsort(-np.abs(z), axis=None)[:shown]:

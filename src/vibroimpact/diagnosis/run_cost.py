@@ -1,15 +1,43 @@
-"""The cost of a run: the simulated records and time steps of this process, counted."""
+"""The cost of a run: CPU time and simulated records of its stages."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from threading import Lock
+from time import process_time
+from typing import Any
 
-# {"records": number of records that this process has simulated, "steps": time steps of
-# their modes, known of the records of a search alone}
-SIMULATED = {"records": 0, "steps": 0}
+SIMULATED = {"records": 0}  # number of records that this process has simulated
 COUNTING = Lock()
 
 
-def count_simulated(records: int, steps: int = 0) -> None:
-    """Add to the numbers of simulated records and of time steps of their modes."""
+def count_simulated(records: int) -> None:
+    """Add to the number of simulated records."""
     with COUNTING:
         SIMULATED["records"] += records
-        SIMULATED["steps"] += steps
+
+
+class StageCosts:
+    """The cost of stages, added to by `with costs(name):`."""
+
+    def __init__(self) -> None:
+        self.stages: dict[str, dict[str, Any]] = {}
+
+    @contextmanager
+    def __call__(self, name: str) -> Iterator[None]:
+        """Add the cost of a `with` block under a name."""
+        start, records = process_time(), SIMULATED["records"]
+        try:
+            yield
+        finally:
+            stage = self.stages.setdefault(name, {"cpu_seconds": 0.0, "simulations": 0})
+            stage["cpu_seconds"] += process_time() - start
+            stage["simulations"] += SIMULATED["records"] - records
+
+    def total(self) -> dict[str, Any]:
+        """Return the `cost` of verdict.json."""
+        stages = self.stages.values()
+        return {
+            "cpu_seconds": float(sum(stage["cpu_seconds"] for stage in stages)),
+            "simulations": sum(stage["simulations"] for stage in stages),
+            "by_stage": self.stages,
+        }

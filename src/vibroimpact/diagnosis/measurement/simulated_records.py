@@ -8,6 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from vibroimpact.diagnosis.run_cost import count_simulated
 from vibroimpact.excitation.random_force import resample_measured
 from vibroimpact.integration.batch import Schedule, integrate_batch, rest_state
 from vibroimpact.integration.contact_convergence import IntegrationError
@@ -47,6 +48,7 @@ def simulate_records(
     """
     at_step = lru_cache(maxsize=None)(lambda record: _at_step(force[record], schedule))
     out = np.empty((len(runs), len(kinds), schedule.samples), np.float32)
+    count_simulated(len(runs))
     moves, weights = of_modes(kinds), force_weights(model, kinds)
     schedule = replace(schedule, derivatives=tuple(map(int, orders(kinds))))
     for first in range(0, len(runs), LANES):
