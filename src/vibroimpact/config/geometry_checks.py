@@ -78,13 +78,10 @@ def centreline_of(structure: Tube) -> Centreline | None:
 
 def off_the_tube(centreline: Centreline, place: str, position: Sequence[float]) -> Problems:
     """Yield a problem when `position` (3,) m is farther from the centreline than the tolerance."""
-    arc_length = min(
-        (segment.nearest(np.array(position)) for segment in centreline.segments),
-        key=lambda s: np.linalg.norm(centreline.position(s) - position),
-    )
-    nearest = centreline.position(arc_length)
-    distance = float(np.linalg.norm(nearest - position))
+    places = centreline.nearest(position)
+    arc_length, distance = min(places, key=lambda each: each[1])
     if distance > LOCATION_TOLERANCE_M:
+        nearest = centreline.position(arc_length)
         yield (
             place,
             list(position),
@@ -95,7 +92,7 @@ def off_the_tube(centreline: Centreline, place: str, position: Sequence[float]) 
         )
         return
     ends = {place for segment in centreline.segments for place in (segment.begin, segment.end)}
-    for other in ends | {segment.nearest(np.array(position)) for segment in centreline.segments}:
+    for other in ends | {place for place, _ in places}:
         near = np.linalg.norm(centreline.position(other) - position) <= LOCATION_TOLERANCE_M
         if near and abs(other - arc_length) > APART_M:
             yield (

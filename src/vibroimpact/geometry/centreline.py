@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,8 @@ from .directions import unit_vector
 
 LOCATION_TOLERANCE_M = 5.0e-3
 SAME_PLACE_M = 1.0e-9
+
+Piece = tuple[float, float, tuple[float, ...] | None]  # length in m, radius in m, toward
 
 
 @dataclass(frozen=True)
@@ -79,6 +82,7 @@ class Centreline:
     """
 
     segments: tuple[Segment, ...]
+    known: dict = field(default_factory=dict, repr=False, compare=False)  # nearest points so far
 
     @property
     def length(self) -> float:
@@ -100,6 +104,19 @@ class Centreline:
         """Return the unit tangent (3,) at an arc length in m."""
         return self.segment_at(arc_length).direction(arc_length)
 
+    def nearest(self, position: Sequence[float] | np.ndarray) -> list[tuple[float, float]]:
+        """Return (arc length in m, distance in m) of the point of each segment that is nearest to
+        `position` (3,) in m.
+        """
+        key = tuple(map(float, position))
+        if key not in self.known:
+            given = np.array(key)
+            places = [piece.nearest(given) for piece in self.segments]
+            self.known[key] = [
+                (place, float(np.linalg.norm(self.position(place) - given))) for place in places
+            ]
+        return self.known[key]
+
     def locate(self, position: ArrayLike, name: str) -> float:
         """Return the arc length in m of the point nearest to `position` (3,) in m.
 
@@ -108,18 +125,16 @@ class Centreline:
         the distance and the nearest point.
         """
         position = np.asarray(position, dtype=float)
-        places = [piece.nearest(position) for piece in self.segments]
-        distances = [np.linalg.norm(self.position(place) - position) for place in places]
-        best = int(np.argmin(distances))
-        if distances[best] > LOCATION_TOLERANCE_M:
+        place, distance = min(self.nearest(position), key=lambda each: each[1])
+        if not distance <= LOCATION_TOLERANCE_M:
             nearest = ", ".join(
-                f"{value:.4f}" for value in np.round(self.position(places[best]), 4) + 0.0
+                f"{value:.4f}" for value in np.round(self.position(place), 4) + 0.0
             )  # + 0.0: no "-0.0000"
             raise ValueError(
-                f"{name} at {position.tolist()} m is {distances[best]:.4f} m off the tube (limit "
+                f"{name} at {position.tolist()} m is {distance:.4f} m off the tube (limit "
                 f"{LOCATION_TOLERANCE_M} m): the nearest point of the centreline is [{nearest}]"
             )
-        return places[best]
+        return place
 
     def stretch(
         self, one: ArrayLike | None, other: ArrayLike | None, name: str
@@ -165,29 +180,25 @@ def build_centreline(structure: Any) -> Centreline:
     """
     if structure.kind == "u_tube":
         radius, leg = structure.bend_radius_m, structure.leg_length_m
-        pieces: list[tuple[float, float, Sequence[float] | None]] = [
-            (leg, np.inf, None),
-            (np.pi * radius, radius, [1.0, 0.0, 0.0]),
-            (leg, np.inf, None),
-        ]
-        return _join([-radius, 0.0, 0.0], [0.0, 0.0, 1.0], pieces)
-    path: list[tuple[float, float, Sequence[float] | None]] = []
+        bend = (np.pi * radius, radius, (1.0, 0.0, 0.0))
+        straight = (leg, np.inf, None)
+        return _join((-radius, 0.0, 0.0), (0.0, 0.0, 1.0), (straight, bend, straight))
+    path: list[Piece] = []
     for segment in structure.segments:
         if segment.kind == "straight":
             path.append((segment.length_m, np.inf, None))
         else:
-            path.append(
-                (np.deg2rad(segment.angle_deg) * segment.radius_m, segment.radius_m, segment.toward)
-            )
-    return _join(structure.start_m, structure.start_direction, path)
+            length = np.deg2rad(segment.angle_deg) * segment.radius_m
+            path.append((length, segment.radius_m, tuple(segment.toward)))
+    return _join(tuple(structure.start_m), tuple(structure.start_direction), tuple(path))
 
 
+@lru_cache(maxsize=8)
 def _join(
-    start: ArrayLike,
-    direction: ArrayLike,
-    pieces: Sequence[tuple[float, float, Sequence[float] | None]],
+    start: tuple[float, ...], direction: tuple[float, ...], pieces: tuple[Piece, ...]
 ) -> Centreline:
-    """Return the Centreline of pieces laid end to end.
+    """Return the Centreline of pieces laid end to end. Variants of one tube share it, and the
+    points that were located on it.
 
     start (3,): position of its start, m.
     direction (3,): tangent there.

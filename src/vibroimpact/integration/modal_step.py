@@ -15,6 +15,7 @@ scheme; small increments keep their digits however small the step.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy.linalg import expm
@@ -121,10 +122,10 @@ def _exact(omega: np.ndarray, damping: np.ndarray, dt: float) -> Scheme:
     """(A, g0, g1, det A, -det(I - A)) by the exponential of the system with the force and its slope
     as two more states, in time / dt.
     """
-    system = np.zeros((omega.size, 4, 4))  # q, dt q', dt² f, dt² (f1 - f0)
-    system[:, 0, 1] = system[:, 1, 2] = system[:, 2, 3] = 1.0
-    system[:, 1, 0], system[:, 1, 1] = -((dt * omega) ** 2), -dt * damping
-    step = np.moveaxis(expm(system), 0, -1) if omega.size else np.zeros((4, 4, 0))
+    modes = zip((-((dt * omega) ** 2)).tolist(), (-dt * damping).tolist(), strict=True)
+    step = np.zeros((4, 4, omega.size))
+    for mode, (stiff, drag) in enumerate(modes):
+        step[..., mode] = _exponential(stiff, drag)
     unit = np.array([1.0, 1.0 / dt])[:, None]  # of q and q'
     A = step[:2, :2] * unit[:, None] / unit[None]
     slope = step[:2, 3] * unit * dt**2
@@ -133,6 +134,14 @@ def _exact(omega: np.ndarray, damping: np.ndarray, dt: float) -> Scheme:
     # -(1 - tr A + det A), without the cancellation
     restoring = -(np.expm1(poles * dt) * np.expm1(other * dt)).real
     return A, step[:2, 2] * unit * dt**2 - slope, slope, np.exp(-damping * dt), restoring
+
+
+@lru_cache(maxsize=4096)  # variants of a model share most modes
+def _exponential(stiff: float, drag: float) -> np.ndarray:
+    """Return (4, 4) the exponential of the system q, dt q', dt² f, dt² (f1 - f0)."""
+    system = np.diag([1.0, 1.0, 1.0], 1)
+    system[1, 0], system[1, 1] = stiff, drag
+    return expm(system)
 
 
 SCHEMES = {"newmark": _newmark, "exact": _exact}

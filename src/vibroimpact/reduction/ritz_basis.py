@@ -16,7 +16,9 @@ from scipy import linalg, sparse
 from scipy.sparse import csgraph
 
 from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.io.memo import Memo, content_key
 
+GROUPS = Memo()
 FAMILIES = ("free_modes", "constrained_modes", "attachment_shapes")
 # A direction is dropped when unit vectors (strain-energy norm) extend beyond the free modes by
 # less than this. It holds less than 1e-10 of the energy of any vector, so no frequency moves by
@@ -76,6 +78,16 @@ def group_numbers(
     mass: sparse.csr_array, stiffness: sparse.csr_array, rows: np.ndarray
 ) -> np.ndarray:
     """Return (dof,) the number of each degree of freedom's group, see uncoupled_groups."""
+    matrices = (
+        part for own in (mass, stiffness) for part in (own.data != 0.0, own.indices, own.indptr)
+    )
+    return GROUPS.get(
+        content_key(rows != 0.0, *matrices), lambda: _connected(mass, stiffness, rows)
+    )
+
+
+def _connected(mass, stiffness, rows):
+    """Return the numbers of group_numbers."""
     moved = sparse.csr_array((rows != 0.0).astype(float))
     pattern = (mass != 0).astype(float) + (stiffness != 0).astype(float) + moved.T @ moved
     return csgraph.connected_components(pattern, directed=False)[1]
