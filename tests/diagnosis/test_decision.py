@@ -1,5 +1,6 @@
 """Conclusions from gains, and that they never contradict themselves."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -20,6 +21,13 @@ def hypothesis(gain, *places):
         for effect, location in (place.split("@") for place in places)
     )
     return Hypothesis(SimpleNamespace(point=Point(terms)), gain, gain, 0.05)
+
+
+def test_stretches_that_contradict_each_other_leave_two_rivals():
+    one, other = hypothesis(1.4, "contact_damping@right"), hypothesis(1.2, "hunt_crossley@right")
+    assert decided(one, other).verdict == "named"
+    found = decided(one, replace(other, apart=2.0))
+    assert found.verdict == "ambiguous" and len(found.leading) == 2
 
 
 def misfit(before, after, floor=1.0):

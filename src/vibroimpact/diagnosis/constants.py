@@ -29,7 +29,6 @@ NULL_WIDTHS = 6.0  # e-folds of the odds of nothing between no gain and NULL_GAI
 # Difference of rivals that counts e-fold, and what is added to it as a share of the gain.
 RIVAL, RIVAL_SHARE = 0.02, 0.04
 REST, REST_WIDTH = 1.7, 0.25  # log power over the floor: something else is as likely as not
-NOTHING_LEFT = 0.2  # log power over the floor, below which no further effect is looked for
 # Excess in dB of the spectra of free runs over their floor, with which something is missing, even
 # if the holding force tells nothing. A completed model that leaves twice as much is refuted.
 FREE_EXCESS_DB = 1.5

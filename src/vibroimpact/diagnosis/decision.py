@@ -27,6 +27,7 @@ EXACT_ALIASES = {  # what no measurement of this kind can tell apart
 }
 SHOWN = 12
 LEAST_SHOWN = 1.0e-3
+LEAST_APART = -100.0  # gain of what could not be run
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,25 +76,34 @@ def decide(search: Search, level: float, floor: float) -> Decision:
         if not _superfluous(each, search.hypotheses):
             distinct.setdefault(each.ids, each)
     hypotheses = list(distinct.values())[:SHOWN]
-    gains = np.array([each.worth for each in hypotheses])
-    best = float(gains[0]) if gains.size else 0.0
+    best = hypotheses[0].worth if hypotheses else 0.0
     rest = level - floor if np.isfinite(floor) else 0.0
     unexplained = float(expit((rest - constants.REST) / constants.REST_WIDTH))
     sure = max(map(sure_gain, hypotheses), default=0.0)
     no_effect = float(expit(constants.NULL_WIDTHS * (1.0 - sure / constants.NULL_GAIN)))
     nothing = no_effect * (1.0 - unexplained)
     share = max(best, 0.0) / max(best + max(rest, 0.0), 1.0e-12)
+    some = (1.0 - no_effect) * (1.0 - unexplained)
     width = constants.RIVAL + constants.RIVAL_SHARE * max(best, 0.0)
-    chance = np.exp((gains - best) / width)
-    chance *= (1.0 - no_effect) * (1.0 - unexplained) / max(chance.sum(), 1.0)
-    ranked = tuple(
-        (each, float(own))
-        for each, own in zip(hypotheses, chance, strict=True)
-        if own > LEAST_SHOWN
-    ) or tuple(zip(hypotheses[:1], map(float, chance[:1]), strict=True))
+    chances = [
+        (each, some * own) for each, own in zip(hypotheses, _odds(hypotheses, width), strict=True)
+    ]
+    chances.sort(key=lambda pair: -pair[1])
+    ranked = tuple(pair for pair in chances if pair[1] > LEAST_SHOWN) or tuple(chances[:1])
     return Decision(
         _verdict(no_effect, unexplained, share, ranked), ranked, nothing, unexplained, rest, share
     )
+
+
+def _odds(hypotheses: Sequence[Hypothesis], width: float) -> list[float]:
+    """Return the probabilities of rivals, if one of them is right: the mean of those by the fitted
+    stretches and those by the others. If the two contradict each other, neither decides.
+    """
+    if not hypotheses:
+        return []
+    by_stretches = np.array([[each.gain, max(each.apart, LEAST_APART)] for each in hypotheses])
+    odds = np.exp((by_stretches - by_stretches.max(axis=0)) / width)
+    return np.mean(odds / odds.sum(axis=0), axis=1).tolist()
 
 
 def gains(search: Search) -> bool:
@@ -194,12 +204,11 @@ def sure_gain(hypothesis: Hypothesis) -> float:
 
 
 def _superfluous(hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:
-    """Return whether some effects of a hypothesis alone gain about as much, fitted or apart."""
+    """Return whether some effects of a hypothesis alone gain about as much."""
     own = {term.effect_id for term in hypothesis.point.terms}
     return any(
         {term.effect_id for term in other.point.terms} < own
-        and min(hypothesis.apart - other.apart, hypothesis.gain - other.gain)
-        < constants.needed_gain(other.worth)
+        and hypothesis.sure_gain_over(other) < constants.needed_gain(other.worth)
         for other in others
     )
 

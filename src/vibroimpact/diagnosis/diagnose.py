@@ -125,8 +125,7 @@ def run_diagnosis(
         return Diagnosis(_refused(refusal, checks, provenance or {}, costs))
     with costs("floor"):
         best = max(searched.hypotheses, key=lambda each: each.gain, default=searched.nothing)
-        played = searched.floors.get(best.point.name)
-        level, floor = played or floor_of(comparison, best.fit)
+        level, floor = floor_of(comparison, best.fit)
     decision = decide(searched, level, floor)
     with costs("free runs"):
         if decision.verdict not in ("none", "unknown") and decision.best is not None:
@@ -150,15 +149,11 @@ def _searched(
     structure, signals = comparison.structure, comparison.signals
     unseen = not_testable(structure.campaign)
     effects = [each for each in EFFECTS.values() if each.reported not in unseen]
-
-    def left(point: Point) -> bool:
-        return _far(with_after(runs, structure, signals, point), signals)
-
-    searched = search(comparison, most, effects, log, left)
+    searched = search(comparison, most, effects, log)
     if comparison.lost and _far(runs, signals) and not gains(searched):
         log("nothing gains on the records that hold the model: the others are compared too")
         wider = comparison.widened()
-        again = search(wider, most, effects, log, left)
+        again = search(wider, most, effects, log)
         if gains(again):
             return wider, again
     return comparison, searched

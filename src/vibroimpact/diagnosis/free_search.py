@@ -24,7 +24,7 @@ from .decision import Decision, conclusion, far_off
 from .explanations import Point
 from .free_runs import FreeRuns, distance, with_after
 from .gauss_newton import Fit
-from .search import Hypothesis, Search, difference
+from .search import Hypothesis, Search, changes, jackknife
 
 RUN_FREE, PER_EFFECT = 12, 4  # points, and those of one effect
 SCANNED = 2  # of them, whose first value is changed by FACTORS
@@ -179,7 +179,7 @@ def _hypothesis(
     before, after = holding_lines(fitted, [nothing.point, own.point])
     value = misfit(fitted, after)
     gain = (misfit(fitted, before) - value) / effective_lines(fitted, before)
-    told = difference(apart, *holding_lines(apart, [nothing.point, own.point]))
+    told = jackknife(*changes(apart, *holding_lines(apart, [nothing.point, own.point])))
     fit = Fit(own.point, tuple(rows), x, after, value, np.diag(1.0 / deviation**2))
     return Hypothesis(fit, gain, *told)
 

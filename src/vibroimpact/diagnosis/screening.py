@@ -20,7 +20,8 @@ from .sensor_starts import sensor_terms
 AT_A_TIME = 256  # points whose lines are held in memory
 TRIED = 12  # of the points that derivatives predict, on each stretch
 KEPT, FEWEST_KEPT = 0.3, 40  # of the points: those that are tried on all stretches
-BETWEEN = 8  # of the best points, beside which those half way to the next are tried
+AGAIN = 2  # values of an effect at a place, when one more effect is sought
+BETWEEN = 10  # effects whose best point is tried half way to the next ones
 FARTHEST_STEP = 1.5  # of a coordinate, from where the effect does nothing
 
 
@@ -50,10 +51,13 @@ def screen(
     across: bool,
     along: int,
     demanded: Sequence[Term] = (),
+    before: Sequence[Screened] = (),
 ) -> Screening:
-    """Return the Screening of effects at all places beside the terms of a Point.
+    """Return the Screening of effects at all places in addition to the terms of a Point.
 
-    sizes, across, along: see Comparison. demanded: terms to try beside those of the catalogue.
+    sizes, across, along: see Comparison. demanded: more terms to try. before: what was screened in
+    addition to nothing, best first: of each effect at each place, only the AGAIN values that gained
+    most are tried again of those far from where it does nothing.
     """
     structure = bench.structure
     places = [
@@ -61,21 +65,31 @@ def screen(
         for effect in effects
         for location in locations(effect, structure.values, structure.names, across, along)
     ]
-    tried = [term for each in places for term in far_terms(*each, sizes)]
-    tried += [*sensor_terms(bench, base), *demanded]
+    far = [term for each in places for term in far_terms(*each, sizes)]
+    tried = [*_best_before(far, before), *sensor_terms(bench, base), *demanded]
     wanted = {effect.id for effect in effects}
-    far = [base.beside(term) for term in tried if term.effect_id in wanted]
+    trials = [base.beside(term) for term in tried if term.effect_id in wanted]
     neutral = [
         base.beside(term) for each in places if (term := neutral_term(*each, sizes)) is not None
     ]
     lines = holding_lines(bench, [base])[0]
     near = _near(bench, lines, neutral, sizes)
-    ranked = _ranked(bench, lines, far + [point for own in near for point in own[:TRIED]])
+    ranked = _ranked(bench, lines, trials + [point for own in near for point in own[:TRIED]])
     ranked = _with_halfway(bench, lines, ranked, along)
     ran = {_last(point) for own in near for point in own}
     ran |= {_last(each.point) for each in ranked if np.isfinite(each.gain)}
-    failed = {_last(point) for point in far + neutral} - ran
+    failed = {_last(point) for point in trials + neutral} - ran
     return Screening(tuple(ranked), tuple(sorted(failed)))
+
+
+def _best_before(far: Sequence[Term], before: Sequence[Screened]) -> list[Term]:
+    """Return the AGAIN terms of each effect and place that gained most before; all if none did."""
+    wanted, kept = set(far), {}
+    for term in (each.point.terms[-1] for each in before):
+        own = kept.setdefault(term.name, [])
+        if term in wanted and len(own) < AGAIN:
+            own.append(term)
+    return [term for own in kept.values() for term in own] or list(far)
 
 
 def _near(
@@ -130,18 +144,19 @@ def _add(gains, bench, lines, stretch, points, which):
 def _with_halfway(
     bench: Bench, lines: np.ndarray, ranked: Sequence[Screened], along: int
 ) -> list[Screened]:
-    """Return Screened with the terms half way to the neighbours of those that gain most: a gain may
-    lie within a quarter of a wave, or a few degrees, and that between two trials.
+    """Return Screened with the terms half way to the neighbours of the best one of each effect: a
+    gain may lie within a quarter of a wave, or a few degrees, and that between two trials.
     """
     tried: dict[tuple, Point] = {}
-    leading = 0
+    leading: set[str] = set()
     for each in ranked:
         *before, last = each.point.terms
-        beside = halfway(last, bench.structure.values, along)
-        for term in beside:
+        if last.effect_id in leading or not np.isfinite(each.gain):
+            continue
+        for term in halfway(last, bench.structure.values, along):
             tried[term.name, term.values] = replace(each.point, terms=(*before, term))
-        leading += bool(beside)
-        if leading == BETWEEN:
+            leading.add(last.effect_id)
+        if len(leading) == BETWEEN:
             break
     points = list(tried.values())
     gains = _gains(bench, lines, points)

@@ -4,8 +4,8 @@ part.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,21 +24,22 @@ from .bench import (
 )
 from .catalogue import within_priors
 from .comparison import Comparison
-from .constants import NOTHING_LEFT, needed_gain
+from .constants import needed_gain
 from .coordinates import effect_coordinates
 from .explanations import Point, Term
-from .floor import floor_of
 from .gauss_newton import Fit, columns, fits
 from .measurement.usable import Refused
 from .plate_starts import plate_terms
 from .screening import Screened, Screening, screen
 
-RACED, EXCHANGED, FINALISTS = 10, 4, 4
-PER_EFFECT = 2  # starts of one effect in a race: its place, or another value but its size
+RACED, EXCHANGED, FINALISTS = 12, 4, 4
+SCREENED_RIVALS = 0.1  # of the best gain of a screening, from which other effects are raced
 ONE_PLACE = 0.05  # of a tube's length: fits that end nearer are one
 CONTENDS = 0.6  # of the gain of the best fit, from which others are polished too
 RIVALS = 0.3  # of the gain of the best in a race, from which others are finalists
 STRONGER = 4.0  # dampers of a race
+# Of the gain that one more effect must bring, below which it is not fitted after a race.
+PROMISING = 0.4
 RACE_PASSES, FINAL_PASSES = 3, 12  # at most
 POLISHED, POLISHED_GAIN = 3, 0.01  # times at most, and the gain below which it ends
 MOST_EFFECTS = 2
@@ -50,13 +51,16 @@ class Hypothesis:
     """A fitted explanation.
 
     gain: of the objective over nothing, in mean log power, on the fitted stretches. apart, error:
-    the same on stretches that took no part, with its standard error.
+    the same on stretches that took no part, with its standard error. change, lines (stretch, band):
+    of their log power there, times the number of lines, and that number; None if not known.
     """
 
     fit: Fit
     gain: float
     apart: float
     error: float
+    change: np.ndarray | None = None
+    lines: np.ndarray | None = None
 
     @property
     def point(self) -> Point:
@@ -75,19 +79,26 @@ class Hypothesis:
         """
         return min(self.apart, self.gain)
 
+    def sure_gain_over(self, other: Hypothesis) -> float:
+        """Return the gain over another one, less the standard error of their difference apart: of
+        two that fit as well, the errors are much alike.
+        """
+        error = 0.0
+        if self.change is not None and other.change is not None and self.lines is not None:
+            _, error = jackknife(self.change - other.change, self.lines)
+        return min(self.apart - other.apart - error, self.gain - other.gain)
+
 
 @dataclass(frozen=True, eq=False)
 class Search:
     """What was found: nothing, and hypotheses, best first.
 
-    floors {name of a Point: (mean log power, that of a model in which nothing else is missing)},
-    where known. failed: effects of which no value could be run. screened: what was screened
-    beside nothing, best first.
+    failed: effects of which no value could be run. screened: what was screened in addition to
+    nothing, best first.
     """
 
     nothing: Hypothesis
     hypotheses: tuple[Hypothesis, ...]
-    floors: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     failed: tuple[str, ...] = ()
     screened: tuple[Screened, ...] = ()
 
@@ -108,12 +119,8 @@ def search(
     most: int = MOST_EFFECTS,
     effects: Sequence[Effect] | None = None,
     log: Callable[[str], None] = lambda text: None,
-    spectra_left: Callable[[Point], bool] = lambda point: False,
 ) -> Search:
     """Return the Search of a Comparison for up to `most` effects at once.
-
-    spectra_left: whether spectra of free runs of a Point are far off: then one more effect is
-    looked for, even if the holding force is near its floor.
 
     Raises Refused where the model as given can not be run.
     """
@@ -129,13 +136,14 @@ def search(
     found: dict[str, Hypothesis] = {}
     base = nothing
     failed: tuple[str, ...] = ()
-    floors: dict[str, tuple[float, float]] = {}
     screened: tuple[Screened, ...] = ()
-    for size in range(1, most + 1):
-        screening = _screened(at, base.point)
+    for _ in range(most):
+        screening = _screened(at, base.point, screened)
         screened = screened or screening.ranked
         failed = tuple(sorted({*failed, *screening.failed}))
         raced = _race(at, screening.ranked, base.point)
+        if base.point.terms and not _promises(at, raced, base):
+            break
         new = _kept(at, _finals(at, [each.point for each in raced[:FINALISTS]], nothing), nothing)
         found |= {each.point.name: each for each in new}
         if not new:
@@ -143,19 +151,15 @@ def search(
         best = max(new, key=lambda each: each.gain)
         for each in sorted(new, key=lambda each: -each.gain):
             log(f"{each.point.name}: {each.gain:.3f}, apart {each.apart:.3f} ± {each.error:.3f}")
-        if best.worth - base.worth < needed_gain(base.worth):
+        if best.sure_gain_over(base) < needed_gain(base.worth):
             break
         if len(best.point.terms) > 1:
             others = _without_first(at, best, nothing, screened, log)
             found |= {each.point.name: each for each in others}
             best = max([best, *others], key=_rated)
         base = best
-        if size < most:
-            floors[best.point.name] = level, floor = floor_of(comparison, best.fit)
-            if level - floor < NOTHING_LEFT and not spectra_left(best.point):
-                break
     ranked_found = sorted(found.values(), key=lambda each: -each.gain)
-    return Search(nothing, tuple(ranked_found), floors, failed, screened)
+    return Search(nothing, tuple(ranked_found), failed, screened)
 
 
 def _nothing(at: _Benches) -> Hypothesis:
@@ -176,16 +180,25 @@ def _rated(hypothesis: Hypothesis) -> float:
     return hypothesis.worth - len(hypothesis.point.terms) * needed_gain(hypothesis.worth)
 
 
-def _screened(at: _Benches, base: Point) -> Screening:
-    """Return the Screening of the effects beside those of a Point, none of them twice: two of one
-    kind at neighbouring places are one that is not where it was looked for.
+def _promises(at: _Benches, raced: Sequence[Screened], base: Hypothesis) -> bool:
+    """Return whether one more effect may gain what it must, by its gain in a race."""
+    lines = holding_lines(at.screened, [base.point])[0]
+    gain = max((each.gain for each in raced), default=0.0) / effective_lines(at.screened, lines)
+    return gain > PROMISING * needed_gain(base.worth)
+
+
+def _screened(at: _Benches, base: Point, before: Sequence[Screened]) -> Screening:
+    """Return the Screening of the effects in addition to those of a Point, none of them twice: two
+    of one kind at neighbouring places are one that is not where it was looked for.
+
+    before: what was screened in addition to nothing, if it was.
     """
     known = {term.effect_id for term in base.terms}
     others = [effect for effect in at.effects if effect.id not in known]
     own = at.comparison
     wanted = any(effect.id == PLATE for effect in others)
     demanded = plate_terms(own, at.screened, base) if wanted else []
-    return screen(at.screened, base, others, own.sizes, own.across, own.along, demanded)
+    return screen(at.screened, base, others, own.sizes, own.across, own.along, demanded, before)
 
 
 def _race(
@@ -196,19 +209,9 @@ def _race(
 
     beside: Point without their last term. most: that are raced.
     """
-    chosen: dict[tuple, Point] = {}
-    per_effect: dict[str, int] = {}
-    for each in ranked:
-        term = each.point.terms[-1]
-        start, count = (term.name, *term.values[1:]), per_effect.get(term.effect_id, 0)
-        if start in chosen or count == PER_EFFECT or not np.isfinite(each.gain):
-            continue
-        per_effect[term.effect_id] = count + 1
-        chosen[start] = each.point
-        if len(chosen) == most:
-            break
+    starts = _starts(at, ranked)[:most]
     strong = replace(at.screened, strength=STRONGER * at.screened.strength)
-    sizes, starts = at.comparison.sizes, list(chosen.values())
+    sizes = at.comparison.sizes
     rows = [effect_coordinates(own.terms, sizes) for own in starts]
     ends = fits(strong, list(zip(starts, rows, strict=True)), RACE_PASSES)
     points = [*starts, *(own.point for own in ends)]
@@ -225,6 +228,30 @@ def _race(
         if each.gain >= RIVALS * raced[0].gain:
             kept.setdefault(_where(each.point.terms[-1], sizes["tube_length"]), each)
     return list(kept.values())
+
+
+def _starts(at: _Benches, ranked: Sequence[Screened]) -> list[Point]:
+    """Return the Points that a race begins from: the best of each effect, then another place or
+    another value but the size, of effects that gain much. Many effects look alike until they are
+    fitted, as all that takes the force off a support does: one of them would fill the race.
+    """
+    rate, sizes = at.comparison.signals.rate, at.comparison.sizes
+    outside = (each.gain for each in ranked if not within_priors(each.point.terms[-1], rate, sizes))
+    best = next(outside, 0.0)
+    firsts: dict[str, Point] = {}
+    seconds: dict[str, Point] = {}
+    for each in ranked:
+        term = each.point.terms[-1]
+        first = firsts.get(term.effect_id)
+        if not np.isfinite(each.gain):
+            continue
+        if first is None and each.gain >= SCREENED_RIVALS * best:
+            firsts[term.effect_id] = each.point
+        elif first is not None and each.gain >= CONTENDS * best:
+            known = first.terms[-1]
+            if (term.name, *term.values[1:]) != (known.name, *known.values[1:]):
+                seconds.setdefault(term.effect_id, each.point)
+    return [*firsts.values(), *seconds.values()]
 
 
 def _where(term: Term, length: float) -> tuple:
@@ -293,23 +320,28 @@ def _hypotheses(at: _Benches, found: Sequence[Fit], nothing: Hypothesis | None) 
     out = []
     for own, lines in zip(found, after, strict=True):
         gain = (nothing.fit.objective - own.objective) / effective_lines(at.fitted, own.lines)
-        out.append(Hypothesis(own, gain, *difference(at.apart, before, lines)))
+        change = changes(at.apart, before, lines)
+        out.append(Hypothesis(own, gain, *jackknife(*change), *change))
     return out
 
 
-def difference(bench: Bench, before: np.ndarray, after: np.ndarray) -> tuple[float, float]:
-    """Return (gain, standard error) of lines after over lines before, in mean log power.
+def changes(bench: Bench, before: np.ndarray, after: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return (change, lines) of a Hypothesis, from lines before and after."""
+    number = counts(bench, before)
+    change = np.sum(number * (log_power(before) - log_power(after)), axis=1)
+    return change, number.sum(axis=1).astype(float)
 
-    The error is that of a jackknife over stretches and bands.
+
+def jackknife(change: np.ndarray, lines: np.ndarray) -> tuple[float, float]:
+    """Return (gain, standard error) in mean log power, by leaving out each stretch and band.
+
+    change, lines (stretch, band): see Hypothesis.
     """
-    weight = counts(bench, before).sum(axis=1).astype(float)
-    change = np.sum(counts(bench, before) * (log_power(before) - log_power(after)), axis=1)
     if not np.isfinite(change).all():
         return -np.inf, np.inf
-    total, lines = change.sum(), weight.sum()
-    left_out = ((total - change) / (lines - weight)).ravel()
-    cells = left_out.size
-    return float(total / lines), float(np.sqrt((cells - 1) * left_out.var()))
+    left_out = ((change.sum() - change) / (lines.sum() - lines)).ravel()
+    error = np.sqrt((left_out.size - 1) * left_out.var())
+    return float(change.sum() / lines.sum()), float(error)
 
 
 def _without_first(
