@@ -27,8 +27,8 @@ END_S = 0.3  # of a run: before its end
 
 @dataclass(frozen=True, eq=False)
 class Bench:
-    """What Points are compared on: stretches, their Schedule, the band of the lines in Hz, and the
-    strength of the dampers in N s/m. Modes above held_below_Hz are not held.
+    """The common ground of a comparison of Points: stretches, their Schedule, the band of the lines
+    in Hz, and the strength of the dampers in N s/m. Modes above held_below_Hz are not held.
     """
 
     structure: Structure
@@ -55,8 +55,8 @@ class Bench:
 
 
 def _runs(bench: Bench, points: Sequence[Point]) -> tuple[list[HeldLane], np.ndarray]:
-    """Return (runs, (point, stretch) number of the run among them, -1 where the values of a Point
-    make no model).
+    """Return (runs, (point, stretch) number of the run among them, -1 if the values of a Point make
+    no model).
     """
     runs: list[HeldLane] = []
     index = np.full((len(points), len(bench.stretches)), -1)
@@ -100,7 +100,7 @@ def settled(bench: Bench) -> np.ndarray:
 
 def in_band(bench: Bench, series: np.ndarray, band: tuple[float, float], order: int) -> np.ndarray:
     """Return (.., sample): the settled samples of a series (.., sample) of a run within a band in
-    Hz, differentiated so often in time.
+    Hz, differentiated `order` times in time.
     """
     rate, count = bench.schedule.sampling_frequency, series.shape[-1]
     inside = settled(bench)
@@ -136,8 +136,8 @@ def sampled_motion(bench: Bench, stretch: int, delay: np.ndarray) -> np.ndarray:
 def holding_lines(bench: Bench, points: Sequence[Point]) -> np.ndarray:
     """Return (point, stretch, channel, line) complex: the spectrum of the holding force in N.
 
-    It is multiplied with the gain of the channel, so that it is a residual of what was measured.
-    NaN of a Point that could not be run.
+    It is multiplied by the gain of the channel, which makes it a residual of the measured values.
+    NaN for a Point that could not be run.
     """
     rate = bench.schedule.sampling_frequency
     first, channels = int(FORGET_S * rate), len(bench.structure.names)
@@ -159,7 +159,7 @@ def holding_lines(bench: Bench, points: Sequence[Point]) -> np.ndarray:
 def holds(bench: Bench, modes: int) -> np.ndarray:
     """Return (stretch,) bool: whether the model as given is held there.
 
-    Where it is, two runs that differ by a millionth stay together. Where the sensors are too few,
+    If it is, two runs whose frequencies differ by NUDGE stay together. If the sensors are too few,
     impacts drive them apart.
     """
     lines = holding_lines(bench, [Point(), Point(frequency=(NUDGE,) * modes)])
@@ -169,7 +169,7 @@ def holds(bench: Bench, modes: int) -> np.ndarray:
 
 
 def band_edges(lines: int) -> np.ndarray:
-    """Return (band + 1,) numbers of the lines at which the bands of so many lines begin and end."""
+    """Return (band + 1,) numbers of the lines at which the bands of `lines` lines begin and end."""
     return np.unique(np.r_[0, np.geomspace(FIRST_BAND, lines, BANDS).astype(int)])
 
 
@@ -186,12 +186,12 @@ def counts(bench: Bench, lines: np.ndarray) -> np.ndarray:
 
 
 def misfit(bench: Bench, lines: np.ndarray) -> float:
-    """Return minus the log likelihood of holding lines (stretch, channel, line), but for a
+    """Return minus the log likelihood of holding lines (stretch, channel, line), up to a
     constant.
 
     Gaussian lines whose level in each band is the most likely one (Whittle, with the levels
-    profiled): the number of lines times the log of their mean power. Of the lines INDEPENDENT
-    count. Infinite where a run failed.
+    profiled): the number of lines times the log of their mean power. A share INDEPENDENT of the
+    lines counts. Infinite if a run failed.
     """
     value = float(np.sum(counts(bench, lines) * log_power(lines)))
     return INDEPENDENT * value if np.isfinite(value) else np.inf

@@ -1,4 +1,4 @@
-"""Where and at which values the effects of the catalogue are tried first."""
+"""The places and values at which the effects of the catalogue are tried first."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ ACROSS_DEG = 90.0
 WAYS, TURNS = 8, 4  # directions of an offset, angles within a lobe
 LOBES = {"foliate_lands": 4, "foliate_obstacle": 4, "foliate_trefoil": 3, "foliate_hexafoil": 6}
 # Logarithm of a factor, within which two good codes of one structure differ: two standard
-# deviations of the priors, and what models in which nothing is hidden were off by on development
+# deviations of the priors, and the errors of models without a hidden effect on development
 # campaigns.
 NO_EFFECT = {
     "mode_frequency_error": 2.0 * FREQUENCY_SD,
@@ -52,8 +52,8 @@ def _turned(effect_id: str, *before: float) -> list[tuple[float, ...]]:
     return [(*before, turn * 2.0 * np.pi / LOBES[effect_id] / TURNS) for turn in range(TURNS)]
 
 
-# Multiples of the sizes of the parameters (see effects.effect.SCALES), far from where the effect
-# does nothing: what lies near is found from its derivative there.
+# Multiples of the sizes of the parameters (see effects.effect.SCALES), far from the neutral
+# value of the effect: values near it are found from the derivative there.
 FAR: dict[str, Sequence[tuple[float, ...]]] = {
     "gap": [(0.4,), (0.65,), (1.5,), (2.5,)],
     "added_mass": [(0.05,), (0.2,), (0.8,)],
@@ -87,11 +87,11 @@ FAR: dict[str, Sequence[tuple[float, ...]]] = {
 def locations(
     effect: Effect, values: Values, channels: Sequence[str], across: bool, places: int
 ) -> list[str]:
-    """Return where an effect is tried.
+    """Return the places at which an effect is tried.
 
     values: configuration in plain values. channels: names. across: whether the structure is seen
     to move across its force. places: along a tube, for a mass: a heavy one moves all modes, and is
-    told within a quarter of the shortest wave alone.
+    found only from within a quarter of the shortest wave.
     """
     if effect.measured:
         return in_the_chain(channels)
@@ -112,8 +112,8 @@ def _count(effect_id: str, places: int) -> int:
 
 
 def halfway(term: Term, values: Values, places: int) -> list[Term]:
-    """Return a term half way to those that are tried on its two sides: to the next places along a
-    tube, the next directions or the next angles of lobes; none where it has no such neighbours.
+    """Return a term half way to its two neighbours among the trials: to the next places along a
+    tube, the next directions or the next angles of lobes; none if it has no such neighbours.
     """
     if term.effect_id in ("support_offset", "preload"):
         whole = complex(*term.values) * np.exp(np.array([-0.5j, 0.5j]) * 2.0 * np.pi / WAYS)
@@ -135,7 +135,7 @@ def halfway(term: Term, values: Values, places: int) -> list[Term]:
 
 
 def _turns(effect_id: str, across: bool) -> tuple[float | None, ...]:
-    """Return directions in degrees from that of the force, None where an effect has none."""
+    """Return directions in degrees from the force, None if an effect has no direction."""
     if effect_id == "one_sided_stop":
         return 0.0, 180.0
     return (None, ACROSS_DEG) if across and effect_id != "added_mass" else (None,)
@@ -175,7 +175,7 @@ def within_priors(term: Term, sampling: float, sizes: Mapping[str, float]) -> bo
 
 
 def neutral_term(effect: Effect, location: str, sizes: Mapping[str, float]) -> Term | None:
-    """Return the term at which an effect does nothing and has a derivative, None where there is
+    """Return the term at which an effect does nothing and has a derivative, None if there is
     none.
     """
     if effect.id == "contact_stiffness":
@@ -190,7 +190,7 @@ LOBED = ("foliate_obstacle", "foliate_trefoil", "foliate_hexafoil")
 
 
 def parts(term: Term, values: Values) -> list[str]:
-    """Return the places whose derivatives add up to that of a term: all supports for "all"."""
+    """Return places whose derivatives add up to the term's derivative: all supports for "all"."""
     if term.location != "all" or term.effect.measured:
         return [term.location]
     return term.effect.locations(values)[1:] or [term.location]

@@ -1,4 +1,4 @@
-"""A campaign as the model is compared with it: read once, cut to what is usable."""
+"""A campaign as the model is compared with it: read once, cut to its usable stretches."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from .sizes import sizes_of
 
 FITTED, SCREENED, APART = 3, 2, 4  # stretches
 ALONG = (6, 24)  # places of a mass along a tube, at least and at most
-BEGIN, STARTS = 0.2, 3  # of a record: where its first stretch begins, and how many there are
+BEGIN, STARTS = 0.2, 3  # start of the first stretch as a share of the record; stretches of a record
 INSIDE = (1.3, 0.92)  # of the ends of the held band: the band of the lines
 
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """Signals of a campaign beside a Structure.
+    """Signals of a campaign and a Structure to compare with them.
 
     impedance: of the structure at its sensors, N s/m:
     the first frequency over the largest square of a mode shape. band: in which motion is held, Hz.
@@ -74,7 +74,7 @@ class Comparison:
 
     def nuisances(self) -> list[Coordinate]:
         """Return the coordinates of the nuisances: of the modes in the band, of all channels and,
-        where motion across the force is seen, of its direction.
+        if motion across the force is seen, of its direction.
         """
         model = self.structure.with_terms(())
         ratio = model.damping / (2.0 * np.maximum(model.omega, 1.0e-12))
@@ -115,7 +115,7 @@ class Comparison:
 
     def apart(self) -> Bench:
         """Return the Bench of stretches that took no part: of held-out records, and a late one of
-        the highest load that is fitted; late ones alone where nothing is held out.
+        the highest load that is fitted; late ones alone if no held-out record can be compared.
         """
         late = self._spread(self.signals.fit(), FITTED, self._fitted)
         held_out = self.signals.holdout()
@@ -125,8 +125,8 @@ class Comparison:
         return self._bench(late or last)
 
     def led(self, bench: Bench, lead_s: float) -> tuple[tuple[Stretch, ...], float]:
-        """Return (the stretches of a Bench with what came before them, seconds of that): lead_s, or
-        less where a record does not have so much before.
+        """Return (the stretches of a Bench with a lead before each, its duration in s): lead_s, or
+        less if a record has less before a stretch.
         """
         duration = bench.schedule.duration
         lead = min(lead_s, *(stretch.start_s for stretch in bench.stretches))
@@ -135,42 +135,42 @@ class Comparison:
 
     @cached_property
     def lost(self) -> tuple[int, ...]:
-        """Return the records that do not hold the model as given: its sensors are too few for the
-        impacts there, and the lines of what is not held tell nothing.
+        """Return the records that do not hold the model as given: their sensors are too few for
+        their impacts, and without a hold the lines show nothing.
         """
         return tuple(record for record, held in enumerate(self._held) if not held)
 
     def widened(self) -> Comparison:
         """Return the Comparison that takes in the records that do not hold the model."""
         wider = replace(self, with_lost=True)
-        object.__setattr__(wider, "_held", self._held)  # what holds the model is found once
+        object.__setattr__(wider, "_held", self._held)  # found once
         return wider
 
     @cached_property
     def _holding(self) -> dict[int, list[float]]:
-        """Return {record: where its stretches begin that are compared, s}, of those that are."""
+        """Return {record: starts of its compared stretches, s}, of the records that have any."""
         if self.with_lost:
             return {record: self._starts(record) for record in range(len(self.signals.load))}
         return {record: held for record, held in enumerate(self._held) if held}
 
     @cached_property
     def _held(self) -> list[list[float]]:
-        """Return where the stretches of each record begin that hold the model as given, s."""
+        """Return the starts in s of the stretches of each record that hold the model as given."""
         starts = [self._starts(record) for record in range(len(self.signals.load))]
         places = [(record, at) for record, own in enumerate(starts) for at in own]
         good = dict(zip(places, holds(self._bench(places), self.modes), strict=True))
         return [[at for at in own if good[record, at]] for record, own in enumerate(starts)]
 
     def _starts(self, record: int) -> list[float]:
-        """Return where the stretches of a record begin, s."""
+        """Return the starts of the stretches of a record, s."""
         whole = valid_samples(self.signals, record) / self.signals.rate
         last = max(whole - STRETCH_S - 1.2, 0.0)
         first = (min(BEGIN * whole + number * STRETCH_S, last) for number in range(STARTS))
         return list(dict.fromkeys(map(float, first)))
 
     def _spread(self, records, count, taken=()):
-        """Return [(record, start)]: so many stretches of records that are compared, from the lowest
-        load to the highest, none of `taken`; of the lowest load where no record holds the model.
+        """Return [(record, start)]: at most `count` compared stretches of records, from the lowest
+        load to the highest, none of `taken`; of the lowest load if no record holds the model.
         """
         left = {
             int(record): [

@@ -2,14 +2,14 @@
 campaigns.
 """
 
-# Priors of the nuisances of a measured structure, one relative sigma: what a modal test finds a
-# good model to be off by, and a shaker to be set up to.
+# Priors of the nuisances of a measured structure, one relative sigma: the errors that a modal test
+# finds in a good model, and errors in the set-up of a shaker.
 FREQUENCY_SD = 0.003
 DAMPING_SD = 0.15
 GAIN_SD = 0.02
 TURN_SD = 0.0175  # rad: one degree, of the direction of the force
-# Of a fitted value, as a share of its change from where the effect is absent: what two codes of one
-# structure differ by, measured on 45 effects named in development campaigns.
+# Of a fitted value, as a share of its change from the neutral value: the difference of two codes of
+# one structure, measured on 45 effects named in development campaigns.
 VALUE_SD = 0.04
 
 STRENGTH = 5.0  # of the dampers, over the impedance of the structure at its sensors
@@ -20,23 +20,23 @@ FORGET_S = 0.7  # of a stretch: until its unknown start is forgotten
 STRETCH_S, SCREENED_S = 4.0, 2.8  # of a stretch that is fitted, and of one that is screened
 
 # Gain in mean log power, on stretches that took no part, that one more effect must bring: at least,
-# and as a share of what is gained without it.
+# and as a share of the gain without it.
 LEAST_GAIN, LEAST_SHARE = 0.05, 0.05
 
 # Decision: gains in mean log power on stretches that took no part.
 NULL_GAIN = 0.05  # less two standard errors, at which an effect is as likely as nothing
 NULL_WIDTHS = 6.0  # e-folds of the odds of nothing between no gain and NULL_GAIN
-# Difference of rivals that counts e-fold, and what is added to it as a share of the gain.
+# Difference of rivals that counts e-fold, and an addition to it as a share of the gain.
 RIVAL, RIVAL_SHARE = 0.02, 0.04
 REST, REST_WIDTH = 1.7, 0.25  # log power over the floor: something else is as likely as not
 # Excess in dB of the spectra of free runs over their floor, with which something is missing, even
-# if the holding force tells nothing. A completed model that leaves twice as much is refuted.
+# if the holding force shows nothing. A completed model that leaves twice as much is refuted.
 FREE_EXCESS_DB = 1.5
-FREE_RIVAL_DB = 1.0  # difference of rivals that free runs tell, that counts e-fold
+FREE_RIVAL_DB = 1.0  # difference of rivals by free runs that counts e-fold
 NAMED = 0.8  # probability from which an explanation is named
-PARTLY = 0.5  # share of what is beyond the floor, from which a part is explained
+PARTLY = 0.5  # share of the excess over the floor, from which a part is explained
 
 
 def needed_gain(gained: float) -> float:
-    """Return the gain that one more effect must bring beside what gains so much."""
+    """Return the gain that one more effect must bring; gained: the gain without it."""
     return LEAST_GAIN + LEAST_SHARE * max(gained, 0.0)

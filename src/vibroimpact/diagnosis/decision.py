@@ -1,8 +1,8 @@
 """From gains to probabilities, and from probabilities to a conclusion.
 
-A hypothesis counts by its gain on stretches that took no part. Nothing is missing where the best
-gain is one that right models have too. Something else is missing where the holding force stays
-above its floor with the best hypothesis.
+A hypothesis counts by its gain on stretches that took no part. Nothing is missing if the best gain
+is no larger than right models reach. Something else is missing if the holding force stays above its
+floor with the best hypothesis.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from . import constants
 from .free_runs import CHANCE_RUNS
 from .search import Hypothesis, Search
 
-EXACT_ALIASES = {  # what no measurement of this kind can tell apart
+EXACT_ALIASES = {  # effects that no measurement of this kind can separate
     "gap@all": ("sensor_gain@force_and_responses", "sensor_gain"),
     "sensor_gain@force_and_responses": ("gap@all", "gap"),
 }
 SHOWN = 12
 LEAST_SHOWN = 1.0e-3
-LEAST_APART = -100.0  # gain of what could not be run
+LEAST_APART = -100.0  # gain of a hypothesis that could not be run
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,9 +35,9 @@ class Decision:
     """A conclusion and its probabilities.
 
     ranked: hypotheses, one per set of effects, with their probabilities, most probable first.
-    nothing, something_else: probabilities. best: the most probable hypothesis, None where there is
-    none. rest: log power over the floor that the best leaves. share: of what is beyond the floor,
-    that the best explains. by_free_runs: whether spectra of free runs alone tell it, see
+    nothing, something_else: probabilities. best: the most probable hypothesis, None if there is
+    none. rest: log power over the floor that the best leaves. share: of the log power over the
+    floor, that the best explains. by_free_runs: whether only spectra of free runs show it, see
     free_search.
     """
 
@@ -68,8 +68,8 @@ class Decision:
 def decide(search: Search, level: float, floor: float) -> Decision:
     """Return the Decision on a Search.
 
-    level: mean log power of the holding force with the best hypothesis. floor: that of a model in
-    which nothing else is missing, NaN where it is not known.
+    level: mean log power of the holding force with the best hypothesis. floor: the same of a model
+    that lacks nothing else, NaN if unknown.
     """
     distinct: dict[tuple[str, ...], Hypothesis] = {}
     for each in sorted(search.hypotheses, key=attrgetter("worth"), reverse=True):
@@ -96,8 +96,8 @@ def decide(search: Search, level: float, floor: float) -> Decision:
 
 
 def _odds(hypotheses: Sequence[Hypothesis], width: float) -> list[float]:
-    """Return the probabilities of rivals, if one of them is right: the mean of those by the fitted
-    stretches and those by the others. If the two contradict each other, neither decides.
+    """Return the probabilities of rivals, if one of them is right: the mean of two, by the fitted
+    stretches and by the others. If the two contradict each other, neither decides.
     """
     if not hypotheses:
         return []
@@ -112,8 +112,8 @@ def gains(search: Search) -> bool:
 
 
 def far_off(misfit: Mapping[str, float | None]) -> bool:
-    """Return whether spectra of free runs are far above their floor after completion, or can not be
-    had; misfit: {after_dB, floor_dB}.
+    """Return whether spectra of free runs are far above their floor after completion, or missing;
+    misfit: {after_dB, floor_dB}.
     """
     after, floor = misfit["after_dB"], misfit["floor_dB"]
     return after is None or floor is None or after - floor > constants.FREE_EXCESS_DB
@@ -127,14 +127,14 @@ def beside_spectra(
 ) -> Decision:
     """Return the Decision given the distances of free runs.
 
-    Nothing is not said where spectra are far above their floor: some laws act on motion that a held
-    run does not have, such as whirling. An effect that makes spectra worse, or that leaves most of
-    a large excess in most records, is refuted; where there was no excess, nothing is missing. One
-    beside which spectra are farther off than chance alone makes is a part of what is missing.
+    "none" becomes "unknown" if spectra are far above their floor: some laws act on a motion that a
+    held run lacks, such as whirling. An effect that makes spectra worse, or that leaves most of a
+    large excess in most records, is refuted; if there was no excess, nothing is missing. An effect
+    that leaves spectra off by more than chance explains only a part.
 
-    misfit: {before_dB, after_dB, floor_dB, closed_fraction} of held-out records, None where not
-    known. by_record: the same of each record: whether a tube whirls may be chance in one.
-    surely_off: whether some held-out record is, see free_runs.surely_off.
+    misfit: {before_dB, after_dB, floor_dB, closed_fraction} of held-out records, None if unknown.
+    by_record: the same of each record: in a single one, whirling may be chance. surely_off: whether
+    a held-out record is off by more than chance, see free_runs.surely_off.
     """
     before, after, floor = misfit["before_dB"], misfit["after_dB"], misfit["floor_dB"]
     if before is None or after is None or floor is None:
@@ -159,7 +159,7 @@ def beside_spectra(
 
 
 def _in_part(decision: Decision) -> Decision:
-    """Return the Decision whose hypotheses are at most a part of what is missing, but by chance."""
+    """Return the Decision whose hypotheses explain the discrepancy in part, unless by chance."""
     ranked = tuple((each, chance / (1 + CHANCE_RUNS)) for each, chance in decision.ranked)
     moved = sum(chance for _, chance in decision.ranked) - sum(chance for _, chance in ranked)
     return replace(
@@ -186,8 +186,8 @@ def _most_stay_off(by_record: Sequence[Mapping[str, float | None]]) -> bool:
 
 
 def refuted(decision: Decision, in_favour_of_nothing: bool = False) -> Decision:
-    """Return the Decision whose best hypothesis is refuted: what it had goes to something else, or
-    to nothing.
+    """Return the Decision whose best hypothesis is refuted: its probability goes to something else,
+    or to nothing.
     """
     chance = decision.ranked[0][1]
     left = replace(decision, ranked=decision.ranked[1:])
@@ -197,8 +197,8 @@ def refuted(decision: Decision, in_favour_of_nothing: bool = False) -> Decision:
 
 
 def sure_gain(hypothesis: Hypothesis) -> float:
-    """Return the gain that a hypothesis has at least, by two standard errors: that in a few bands
-    is as sure as that in many.
+    """Return the least gain of a hypothesis, by two standard errors: a gain in a few bands is as
+    sure as one in many.
     """
     return min(hypothesis.apart - 2.0 * hypothesis.error, hypothesis.gain)
 

@@ -54,11 +54,11 @@ Log = Callable[[str], None]
 
 @dataclass(frozen=True, eq=False)
 class Diagnosis:
-    """A verdict and what it rests on; all but the verdict None where a campaign was refused."""
+    """A verdict and its grounds, which are None if the campaign was refused."""
 
     verdict: Verdict
     comparison: Comparison | None = None
-    identified: Identified | None = None  # in place of a comparison, where there is no model
+    identified: Identified | None = None  # in place of a comparison, if there is no model
     signals: Signals | None = None
     search: Search | None = None
     decision: Decision | None = None
@@ -80,12 +80,12 @@ def diagnose(
     effort: str = "standard",
     threads: int = 1,
 ) -> Verdict:
-    """Return the Verdict on what a model lacks, given a measured campaign.
+    """Return the Verdict on the effects that a model lacks, given a measured campaign.
 
     campaign: a campaign Dataset, or the path of its file. model: a checked Config, the path of a
-    configuration, or "identified": modes are identified from the campaign; what is known of such a
-    structure is a MeasuredStructure or its file. effort: "quick" looks for one effect, "standard"
-    for two, "thorough" for three at once, both for as many as gain in an identified structure.
+    configuration, or "identified": modes are identified from the campaign; known facts of such a
+    structure are in a MeasuredStructure or its file. effort: "quick" looks for one effect,
+    "standard" for two, "thorough" for three at once; for "identified" both add all that gain.
     threads: runs at a time; no number depends on it.
 
     A campaign that can not be compared gives the verdict "not_testable". Raises ConfigError for a
@@ -102,8 +102,8 @@ def run_diagnosis(
     provenance: dict[str, Any] | None = None,
     log: Log = lambda text: None,
 ) -> Diagnosis:
-    """Return the Diagnosis; arguments as of `diagnose`. provenance: of verdict.json. log: is given
-    a line for each hypothesis that was fitted.
+    """Return the Diagnosis; arguments as of `diagnose`. provenance: of verdict.json. log: receives
+    a line for each fitted hypothesis.
     """
     if effort not in EFFORTS:
         raise ValueError(f"effort = '{effort}': give one of {', '.join(EFFORTS)}")
@@ -141,10 +141,10 @@ def run_diagnosis(
 def _searched(
     comparison: Comparison, runs: FreeRuns, most: int, log: Log
 ) -> tuple[Comparison, Search]:
-    """Return (the Comparison that told more, its Search); runs: of the model as given.
+    """Return (the Comparison that shows more, its Search); runs: of the model as given.
 
-    A model that lacks much is not held where the right one is: where nothing gains on the records
-    that hold it, and its spectra are far off, the others are compared too.
+    Some records hold the right model, but not one that lacks much. If nothing gains on the records
+    that hold the given one, and its spectra are far off, the others are compared too.
     """
     structure, signals = comparison.structure, comparison.signals
     unseen = not_testable(structure.campaign)
@@ -195,7 +195,7 @@ def _run_identified(
 
 @dataclass(frozen=True, eq=False)
 class _Found:
-    """What the stages found."""
+    """The results of the stages."""
 
     signals: Signals
     searched: Search
@@ -268,7 +268,7 @@ def spectra(diagnosis: Diagnosis) -> xr.Dataset:
 
 
 def evidence(diagnosis: Diagnosis) -> xr.Dataset:
-    """Return what is shown of a diagnosis beside its spectra, see evidence.evidence_of."""
+    """Return the evidence of a diagnosis: forces, laws, waveforms; see evidence.evidence_of."""
     if diagnosis.identified is not None:
         return diagnosis.identified.evidence(diagnosis.chosen)
     if diagnosis.comparison is None or diagnosis.search is None:
@@ -279,9 +279,7 @@ def evidence(diagnosis: Diagnosis) -> xr.Dataset:
 
 
 def _refused(refusal: Refused, checks, provenance, costs) -> Verdict:
-    """Return the verdict on a campaign that can not be tested; checks: rows beside those of the
-    refusal.
-    """
+    """Return the verdict on an untestable campaign; checks: rows before those of the refusal."""
     empty = Misfit(before_dB=None, after_dB=None, floor_dB=None, closed_fraction=None)
     return not_testable_verdict(
         _contract([*checks, *refusal.checks]),
@@ -301,8 +299,8 @@ def _contract(checks):
 def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
     """Return the Diagnosis of a campaign that was compared.
 
-    What makes held-out records worse, or leaves them far off, is not offered: it is withdrawn, and
-    the verdict is unknown.
+    An explanation that makes held-out records worse, or leaves them far off, is dropped: the
+    verdict is unknown and states it as withdrawn, or is none if there was no excess.
     """
     misfits, effects, withdrawn = _misfits(found), _effects(found), None
     decision = _verified(found, misfits["holdout"] or misfits["fit"])
@@ -361,7 +359,7 @@ def _verified(found: _Found, told: dict[str, Any]) -> Decision:
 
 
 def _surely_off(found: _Found) -> bool:
-    """Return whether a record that took no part is off by more than chance with what is named."""
+    """Return whether a record that took no part is surely off with the best hypothesis."""
     if found.comparison is None or found.decision.best is None:
         return False
     if found.decision.verdict not in ("named", "ambiguous"):
@@ -381,7 +379,7 @@ def _misfits(found: _Found) -> dict[str, Any]:
 
 
 def _effects(found: _Found) -> list[dict[str, Any]]:
-    """Return the rows of the effects of the best hypothesis, none where nothing is missing."""
+    """Return the rows of the effects of the best hypothesis, none if nothing is missing."""
     decision = found.decision
     if decision.best is None or decision.verdict == "none":
         return []
@@ -391,7 +389,7 @@ def _effects(found: _Found) -> list[dict[str, Any]]:
 
 
 def _decided(decision: Decision, effects: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return the part of verdict.json that says what is missing, and how sure that is."""
+    """Return the part of verdict.json on the missing effects and their probabilities."""
     conclusion = decision.verdict
     named = conclusion in WITH_EFFECTS
     sets, chances = ambiguity(decision) if conclusion in WITH_AMBIGUITY_SET else ([], [])
@@ -425,14 +423,14 @@ def _decided(decision: Decision, effects: list[dict[str, Any]]) -> dict[str, Any
 
 
 def _offered(searched: Search, decision: Decision) -> Point:
-    """Return the Point of the completed model: that of nothing where nothing is offered."""
+    """Return the Point of the completed model, without effects if none is offered."""
     if decision.verdict in ("none", "unknown") or decision.best is None:
         return searched.nothing.point
     return decision.best.point
 
 
 def _sentence(conclusion):
-    """Return what the file of the completed model says of itself."""
+    """Return the sentence at the head of the file of the completed model."""
     if conclusion in ("none", "unknown"):
         return f"The verdict is {conclusion}: no effect was added, modes are corrected."
     return "The model with the effects that the campaign shows to be missing; modes are corrected."
@@ -456,7 +454,7 @@ def _lost_rows(found: _Found) -> list[dict[str, Any]]:
 
 
 def _free_rows(decision: Decision) -> list[dict[str, Any]]:
-    """Return the row of checks for what spectra of free runs alone tell."""
+    """Return the row of checks for an effect that only spectra of free runs show."""
     if not decision.by_free_runs or decision.verdict in ("none", "unknown"):
         return []
     sentence = (

@@ -1,8 +1,8 @@
-"""What the holding force looks like where nothing is missing: the model plays the measurement.
+"""The holding force of a model that lacks nothing: the model plays the measurement.
 
 The model with drawn nuisances runs free under the measured force. The model without them is held to
-that motion and noise, and nuisances are fitted as those of the measurement are. What is left is the
-floor of the holding force.
+that motion and noise, and nuisances are fitted as to the measurement. The holding force that
+remains is the floor.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ PASSES = 1  # of the fit of the nuisances: a second one changes the floor by 0.1
 
 
 def floor_of(comparison: Comparison, best: Fit) -> tuple[float, float]:
-    """Return (mean log power of the holding force of a Fit, the same where nothing else is
-    missing), on the fitted stretches; the second NaN where the model can not be run free.
+    """Return (mean log power of the holding force of a Fit, the same if nothing else is missing),
+    on the fitted stretches; the second NaN if records are unfiltered or the free run fails.
     """
     bench = comparison.fitted()
     rng = np.random.default_rng(1)
@@ -52,9 +52,7 @@ def floor_of(comparison: Comparison, best: Fit) -> tuple[float, float]:
 
 
 def _noise(comparison: Comparison, samples: int, rng: np.random.Generator) -> np.ndarray:
-    """Return (channel, sample) m: noise of the channels as the displacement that they are held
-    to.
-    """
+    """Return (channel, sample) m: noise of the channels, as a displacement."""
     signals, (low, high) = comparison.signals, comparison.band
     rate = comparison.rates.sampling
     frequency = np.fft.rfftfreq(samples, 1.0 / rate)
@@ -70,10 +68,10 @@ def _noise(comparison: Comparison, samples: int, rng: np.random.Generator) -> np
 def _played(
     comparison: Comparison, bench: Bench, point: Point, rng: np.random.Generator
 ) -> tuple[Stretch, ...] | None:
-    """Return the stretches with the motion of a Point that runs free, None where it fails.
+    """Return the stretches with the motion of a Point that runs free, None if it fails.
 
-    The run begins before the stretch, so that the held run does not know its start, as it does not
-    know that of the measurement.
+    The run begins before the stretch, so that the held run does not know its start, as with a
+    measurement.
     """
     model, chain = bench.structure.model(point), bench.structure.measuring(point)
     led, lead = comparison.led(bench, LEAD_S)

@@ -47,7 +47,7 @@ class FreeRuns:
 
 
 def free_runs(structure: Structure, signals: Signals, after: Point | None) -> FreeRuns:
-    """Return the FreeRuns of the model as given and of a Point; None if nothing is completed."""
+    """Return the FreeRuns of the model as given and of a Point, None if nothing is completed."""
     given = _simulated(structure, signals, Point())
     completed = given if after is None else _simulated(structure, signals, after)
     spectra = [_psd(values, signals) for values in (signals.response[:, None], given, completed)]

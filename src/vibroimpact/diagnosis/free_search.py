@@ -1,9 +1,9 @@
-"""What only free motion shows.
+"""Effects that only free motion shows.
 
 Friction keeps a tube from whirling; held to a motion that does not whirl, a model without friction
-does not whirl either, and the holding force tells nothing. Where the spectra of free runs stay far
-above their floor, the points that screening found best beside what is known run free as well. This
-compares statistics of chaotic motion: a place can be told, a value hardly.
+does not whirl either, and the holding force shows nothing. If the spectra of free runs stay far
+above their floor, the best points of the screening run free as well. This compares statistics of
+chaotic motion: it finds a place, but hardly a value.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from .free_runs import FreeRuns, distance, with_after
 from .gauss_newton import Fit
 from .search import Hypothesis, Search, changes, jackknife
 
-RUN_FREE, PER_EFFECT = 12, 4  # points, and those of one effect
+RUN_FREE, PER_EFFECT = 12, 4  # points, in all and of one effect
 SCANNED = 2  # of them, whose first value is changed by FACTORS
 RECORDS = 2  # those whose spectra are farthest off
 FACTORS = (0.1, 0.3, 3.0, 10.0)
@@ -50,9 +50,9 @@ def free_search(
     runs: FreeRuns,
     log: Callable[[str], None] = lambda text: None,
 ) -> tuple[Decision, FreeRuns]:
-    """Return (Decision, FreeRuns): those given where free runs show nothing more.
+    """Return (Decision, FreeRuns): the given ones if free runs show nothing more.
 
-    runs: of the model as given. Beside a hypothesis that is named nothing more is looked for.
+    runs: of the model as given. Nothing is sought unless the verdict is none or unknown.
     """
     told = distance(runs, comparison.signals, comparison.signals.fit())
     named = decision.verdict not in ("none", "unknown")
@@ -124,7 +124,7 @@ def _run(
         runs = with_after(known, comparison.structure, comparison.signals, point, records)
         told = distance(runs, comparison.signals, records)
         if (after := told["after_dB"]) is not None and (floor := told["floor_dB"]) is not None:
-            # a floor that grows, as where one run whirls and another does not, closes nothing
+            # a floor that grows, as when one run whirls and another does not, closes nothing
             closed = 1.0 - excess(after, min(floor, scatter)) / max(excess(away, scatter), 1.0e-9)
             out.append(_Trial(point, after, closed))
     return sorted(out, key=_away)
@@ -187,8 +187,8 @@ def _hypothesis(
 def _reach(
     x: float, at: int, own: _Trial, trials: Sequence[_Trial], rows: Sequence[Coordinate]
 ) -> float:
-    """Return how far from a value x its interval reaches: to the next values on both sides that are
-    worse, and to all that are not.
+    """Return the half width of the interval of a value x: up to the nearest worse values on both
+    sides of all that are as good.
     """
     tried = [
         (to_vector(trial.point, rows)[at], trial.away - own.away < FREE_RIVAL_DB)

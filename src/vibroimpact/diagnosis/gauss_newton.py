@@ -2,7 +2,7 @@
 
 With r the whitened lines, J their derivative and z the coordinates over their prior sigma, it
 lowers misfit + z² / 2: the step solves (2 J^H J + 1 / sd²) dx = -(2 J^H r + x / sd²). Held to the
-measurement, r is a smooth function even where the free motion is chaotic.
+measurement, r is a smooth function even if the free motion is chaotic.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ SETTLED = 2.0e-3  # gain per effective line, below which it ends
 class Fit:
     """A fitted Point.
 
-    rows, x (coordinate,): what was fitted, and its coordinates. lines (stretch, channel, line): of
-    the holding force there. objective: misfit and prior. information (coordinate, coordinate): the
-    inverse of their covariance.
+    rows, x (coordinate,): the fitted Coordinates and their values. lines (stretch, channel, line):
+    of the holding force there. objective: misfit and prior. information (coordinate, coordinate):
+    the inverse of their covariance.
     """
 
     point: Point
@@ -49,7 +49,7 @@ def columns(
     bench: Bench, point: Point, rows: Sequence[Coordinate], lines: np.ndarray
 ) -> np.ndarray:
     """Return (coordinate, stretch, channel, line): derivatives of the lines at a Point by
-    differences; 0 where a run fails. lines: those at the Point.
+    differences; 0 if a run fails. lines: at the Point.
     """
     moved, step = _moved(point, rows)
     return _derivatives(holding_lines(bench, moved), lines, step)
@@ -82,7 +82,7 @@ def fits(
     so that their runs fill the lanes of the kernel; none depends on another.
 
     passes: at most. known (nuisance, stretch, channel, line): columns of the nuisances among
-    the coordinates, which are kept; where None, they are found anew in each pass.
+    the coordinates, which are kept; if None, they are found anew in each pass.
     """
     running = dict(enumerate(_fit(bench, *start, passes, known) for start in starts))
     asked = {number: next(own) for number, own in running.items()}

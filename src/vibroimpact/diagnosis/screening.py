@@ -1,5 +1,5 @@
-"""Screening: each effect of the catalogue at each place, near where it does nothing by its
-derivative, and far from it by trial.
+"""Screening: each effect of the catalogue at each place, near its neutral value by derivative, and
+far from it by trial.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ TRIED = 12  # of the points that derivatives predict, on each stretch
 KEPT, FEWEST_KEPT = 0.3, 40  # of the points: those that are tried on all stretches
 AGAIN = 2  # values of an effect at a place, when one more effect is sought
 BETWEEN = 10  # effects whose best point is tried half way to the next ones
-FARTHEST_STEP = 1.5  # of a coordinate, from where the effect does nothing
+FARTHEST_STEP = 1.5  # of a coordinate, from the neutral value of the effect
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +35,7 @@ class Screened:
 
 @dataclass(frozen=True, eq=False)
 class Screening:
-    """Screened, best first, and the ids of effects of which no trial and no derivative could be
+    """Screened, best first, and the ids of effects without a trial or a derivative that could be
     run.
     """
 
@@ -55,9 +55,9 @@ def screen(
 ) -> Screening:
     """Return the Screening of effects at all places in addition to the terms of a Point.
 
-    sizes, across, along: see Comparison. demanded: more terms to try. before: what was screened in
-    addition to nothing, best first: of each effect at each place, only the AGAIN values that gained
-    most are tried again of those far from where it does nothing.
+    sizes, across, along: see Comparison. demanded: more terms to try. before: Screened in addition
+    to nothing, best first: of the values of an effect at a place that are far from neutral, only
+    the AGAIN that gained most are tried again.
     """
     structure = bench.structure
     places = [
@@ -145,7 +145,7 @@ def _with_halfway(
     bench: Bench, lines: np.ndarray, ranked: Sequence[Screened], along: int
 ) -> list[Screened]:
     """Return Screened with the terms half way to the neighbours of the best one of each effect: a
-    gain may lie within a quarter of a wave, or a few degrees, and that between two trials.
+    gain may be as narrow as a quarter of a wave, or a few degrees, and lie between two trials.
     """
     tried: dict[tuple, Point] = {}
     leading: set[str] = set()
@@ -165,7 +165,7 @@ def _with_halfway(
 
 
 def _gains(bench: Bench, lines: np.ndarray, points: Sequence[Point]) -> np.ndarray:
-    """Return (point,): how much lower the misfit of points is than that of lines."""
+    """Return (point,): the misfit of lines less the misfit of each point."""
     now, out = misfit(bench, lines), []
     for first in range(0, len(points), AT_A_TIME):
         found = holding_lines(bench, points[first : first + AT_A_TIME])

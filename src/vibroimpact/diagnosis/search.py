@@ -1,5 +1,5 @@
-"""Forward search: the best effect beside what is known, until none gains on stretches that took no
-part.
+"""Forward search: the best effect is added to those found, until none gains on stretches that took
+no part.
 """
 
 from __future__ import annotations
@@ -74,8 +74,8 @@ class Hypothesis:
 
     @property
     def worth(self) -> float:
-        """Return the gain that it counts by: that on stretches that took no part, and no more than
-        it had where it was fitted.
+        """Return the gain that it counts by: the lower of the gains on the fitted stretches and on
+        those that took no part.
         """
         return min(self.apart, self.gain)
 
@@ -91,10 +91,10 @@ class Hypothesis:
 
 @dataclass(frozen=True, eq=False)
 class Search:
-    """What was found: nothing, and hypotheses, best first.
+    """The hypothesis that nothing is missing, and hypotheses of effects, best first.
 
-    failed: effects of which no value could be run. screened: what was screened in addition to
-    nothing, best first.
+    failed: effects without a value that could be run. screened: single effects in addition to
+    nothing, as screened, best first.
     """
 
     nothing: Hypothesis
@@ -122,7 +122,7 @@ def search(
 ) -> Search:
     """Return the Search of a Comparison for up to `most` effects at once.
 
-    Raises Refused where the model as given can not be run.
+    Raises Refused if the model as given can not be run.
     """
     at = _Benches(
         comparison,
@@ -163,7 +163,7 @@ def search(
 
 
 def _nothing(at: _Benches) -> Hypothesis:
-    """Return the Hypothesis that nothing is missing. Raises Refused where it can not be run."""
+    """Return the Hypothesis that nothing is missing. Raises Refused if it can not be run."""
     if found := _finals(at, [Point()]):
         return found[0]
     names = [at.comparison.signals.record_names[each.record] for each in at.fitted.stretches]
@@ -176,22 +176,22 @@ def _nothing(at: _Benches) -> Hypothesis:
 
 
 def _rated(hypothesis: Hypothesis) -> float:
-    """Return the gain of a Hypothesis less what each effect must bring."""
+    """Return the gain of a Hypothesis less the gain that each of its effects must bring."""
     return hypothesis.worth - len(hypothesis.point.terms) * needed_gain(hypothesis.worth)
 
 
 def _promises(at: _Benches, raced: Sequence[Screened], base: Hypothesis) -> bool:
-    """Return whether one more effect may gain what it must, by its gain in a race."""
+    """Return whether one more effect may gain enough, by its gain in a race."""
     lines = holding_lines(at.screened, [base.point])[0]
     gain = max((each.gain for each in raced), default=0.0) / effective_lines(at.screened, lines)
     return gain > PROMISING * needed_gain(base.worth)
 
 
 def _screened(at: _Benches, base: Point, before: Sequence[Screened]) -> Screening:
-    """Return the Screening of the effects in addition to those of a Point, none of them twice: two
-    of one kind at neighbouring places are one that is not where it was looked for.
+    """Return the Screening of the effects that a Point lacks, in addition to its own. None is added
+    twice: two of one kind at neighbouring places are one at a place not tried.
 
-    before: what was screened in addition to nothing, if it was.
+    before: effects screened in addition to nothing; empty in the first screening.
     """
     known = {term.effect_id for term in base.terms}
     others = [effect for effect in at.effects if effect.id not in known]
@@ -207,7 +207,7 @@ def _race(
     """Return the best screened points after some passes of Gauss-Newton, best first, one of each
     effect and place. Stronger dampers widen the basin in which these find the right place.
 
-    beside: Point without their last term. most: that are raced.
+    beside: Point without their last term. most: number of starts in the race.
     """
     starts = _starts(at, ranked)[:most]
     strong = replace(at.screened, strength=STRONGER * at.screened.strength)
@@ -255,7 +255,7 @@ def _starts(at: _Benches, ranked: Sequence[Screened]) -> list[Point]:
 
 
 def _where(term: Term, length: float) -> tuple:
-    """Return what two fits of one effect at one place have in common; length: of the tube, m."""
+    """Return a key that fits of one effect at one place share; length: of the tube, m."""
     arc = arc_length_m(term.location)
     return term.effect_id, term.location if arc is None else round(arc / (ONE_PLACE * length))
 
@@ -268,8 +268,8 @@ def _finals(
 ) -> list[Hypothesis]:
     """Return the Hypotheses of points, fitted with all nuisances.
 
-    The columns of the nuisances are those at the first point; polished: for the best fit, and those
-    that gain nearly as much, they are found again where it ends, as long as that helps.
+    The columns of the nuisances are taken at the first point that runs; polished: the best fit, and
+    fits that gain nearly as much, take new columns at their ends, as long as that helps.
     """
     columns_at = ((number, _nuisance_columns(at, point)) for number, point in enumerate(points))
     first, known = next((own for own in columns_at if own[1] is not None), (len(points), None))
@@ -283,7 +283,7 @@ def _finals(
 
 
 def _nuisance_columns(at: _Benches, point: Point) -> np.ndarray | None:
-    """Return the columns of the nuisances at a Point, None where it can not be run."""
+    """Return the columns of the nuisances at a Point, None if it can not be run."""
     lines = holding_lines(at.fitted, [point])[0]
     if not np.isfinite(lines).all():
         return None
@@ -351,10 +351,10 @@ def _without_first(
     screened: Sequence[Screened],
     log: Callable[[str], None],
 ) -> list[Hypothesis]:
-    """Return Hypotheses in which the first effect of the best is dropped or, where that costs,
-    exchanged: it was chosen before the others were known, and may have stood for another one.
+    """Return Hypotheses in which the first effect of the best is dropped or, if that costs too
+    much, exchanged: it was chosen before the others were known, and may stand for another one.
 
-    screened: what was screened beside nothing, best first: the rivals of the first effect.
+    screened: effects in addition to nothing, best first: the rivals of the first effect.
     """
     base = replace(best.point, terms=best.point.terms[1:])
     out = _kept(at, _finals(at, [base], nothing, polished=False), nothing)

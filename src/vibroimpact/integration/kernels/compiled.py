@@ -38,7 +38,7 @@ INLINED: dict[str, Any] = {
     "no_cfunc_wrapper": True,
 }
 DIGEST_BYTES = hashlib.sha256().digest_size
-# Said once, where every process has to compile.
+# Said once, if every process has to compile.
 NO_CACHE = (
     "vibroimpact: the compiled kernels can not be kept ({reason}): every job compiles them again;"
     " set NUMBA_CACHE_DIR to a folder that can be written"
@@ -70,8 +70,8 @@ def entry_point(function: Function) -> Function:
     """The compiled function, for calls from Python, its machine code cached on disk. Other threads
     of Python go on while it runs.
 
-    There is no cache where no folder can be written, where the sources are not plain files, and
-    where they have changed since this process imported them.
+    There is no cache if no folder can be written, if the sources are not plain files, or if they
+    have changed since this process imported them.
     """
     if IMPORTED_SOURCES and source_digest() == IMPORTED_SOURCES:
         for place in cache_places():
@@ -85,13 +85,13 @@ def entry_point(function: Function) -> Function:
 def _say_once(sentence: str, reason: str = "") -> None:
     if sentence not in _said:
         _said.add(sentence)
-        # of the terminal, where the output of a job goes to its log
+        # to the terminal, even if the output of a job goes to its log
         print(sentence.format(reason=reason), file=sys.__stderr__ or sys.stderr, flush=True)
 
 
 def cache_places() -> list[Path]:
-    """Parent folders for the cache, the first choice first: NUMBA_CACHE_DIR where it is set, else
-    beside the sources, then the user's cache folder.
+    """Parent folders for the cache, the first choice first: NUMBA_CACHE_DIR if it is set, else
+    __pycache__ of the sources, then the user's cache folder.
     """
     if config.CACHE_DIR:
         return [Path(config.CACHE_DIR)]
@@ -100,7 +100,7 @@ def cache_places() -> list[Path]:
 
 
 def _compiled_with_cache(function, folder):
-    """The compiled function with its cache in a folder; None where numba cannot write there."""
+    """The compiled function with its cache in a folder; None if numba cannot write there."""
     setting, config.CACHE_DIR = config.CACHE_DIR, str(folder)
     try:
         compiled = njit(cache=True, **ENTRY)(function)
@@ -141,7 +141,7 @@ class CheckedCacheFile(IndexDataCacheFile):
         return super()._load_data(name)
 
     def load(self, key: Any) -> Any:
-        """Return machine code, None where it has to be compiled, which is announced."""
+        """Return machine code; None, with an announcement, if it has to be compiled."""
         data = super().load(key)
         if data is None:
             _say_once(COMPILING)

@@ -69,7 +69,7 @@ def solve_contact(modal, contact, laws, special, state, tally, work):
     """Forces and displacements of the contact and element rows at the end of the step, to
     work.force, work.deflection and work.u; True if a force may act in any lane.
 
-    special: there are Laws. Without them, where nothing is near and nothing has been for QUIET
+    special: there are Laws. Without them, if nothing is near and no force has acted for QUIET
     steps, nothing is written: u is u_free, and all forces are zero as they were.
     """
     near = lanes_in_contact(contact, laws, work)
@@ -169,7 +169,7 @@ def update_plain_forces(contact, work, iterating):
 
 @inlined
 def update_all_forces(modal, contact, laws, state, work, iterating):
-    """update_plain_forces where there are Laws: all contacts and elements."""
+    """update_plain_forces if there are Laws: all contacts and elements."""
     change, size = spread(0.0), spread(0.0)
     all_forces(modal, contact, laws, state, work, work.u)
     for k in range(laws.contact_point.size):

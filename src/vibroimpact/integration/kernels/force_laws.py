@@ -27,7 +27,7 @@ def radial_offset(contact, p, u1, u2):
 
 @inlined
 def elastic_circle_force(contact, p, u1, u2):
-    """Force on the structure at point p along its two directions: -k (r - gap) d / r where r > gap.
+    """Force on the structure at point p along its two directions: -k (r - gap) d / r if r > gap.
 
     No branch: with lanes of their own it would be predicted wrong too often.
     """
@@ -99,9 +99,9 @@ def friction_force(laws, state, k, slip, normal):
 
 @inlined
 def element_force(laws, state, e, u, du, v, speed):
-    """Force of local element e on the structure, and that of its slider: (force, slider).
+    """Force of local element e on the structure, and of its slider alone: (force, slider).
 
-    u, du, v: displacement, its increment over the step, velocity; speed: that of the drag.
+    u, du, v: displacement, its increment over the step, velocity; speed: for the drag.
     """
     slider = fma(-load(laws.slider_stiffness, e), du, load(state.slider_force, e))
     slider = clip(slider, load(laws.slip_limit, e))
@@ -116,8 +116,8 @@ def element_force(laws, state, e, u, du, v, speed):
 
 @inlined
 def row_velocity(modal, state, u, r):
-    """End-of-step velocity of row r from its displacement and what the last step left in
-    State.row_velocity.
+    """End-of-step velocity of row r from its displacement and State.row_velocity of the last
+    step.
 
     Newmark: 2 du/dt less the last velocity, exact for the scheme. Exact modal step: second-order
     backward difference 1.5 du/dt - 0.5 (du/dt of the last step).

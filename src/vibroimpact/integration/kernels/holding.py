@@ -4,12 +4,12 @@ The damper of sensor s, of strength c_s, bears the force
 
     u_s = c_s (v_s - S_s q'),
 
-v_s being the measured velocity. It is implicit in the step: with e the measured displacement less
-that of the model, and the rate of e as row_velocity takes it from displacements,
+v_s being the measured velocity. It is implicit in the step: with e the measured less the model's
+displacement, and the rate of e as row_velocity takes it from displacements,
 
     rate_free = w0 (e_free - e) + w1 m,        u = (I + w0 c G)^-1 c rate_free = gain rate_free,
 
-where e_free counts no damper at the end of the step and G is the compliance between the sensors.
+with e_free without a damper at the end of the step and G the compliance between the sensors.
 Measured motion and model pass the same difference, so that the difference makes no error between
 them.
 """

@@ -283,7 +283,7 @@ def where(typing_context, mask, a, b):
 
 @intrinsic
 def in_every_lane(typing_context, condition):
-    """The mask that is set in every lane where the condition holds, in none where it does not."""
+    """The mask that is set in every lane if the condition holds, else in none."""
 
     def code(context, builder, sig, args):
         every, none = (ir.Constant(MASK, [bit] * LANES) for bit in (1, 0))
@@ -343,13 +343,13 @@ def inverse_square_root(a):
 
 @inlined
 def larger(a, b):
-    """The larger of two, lane by lane; b where they are equal or one is not a number."""
+    """The larger of two, lane by lane; b if they are equal or one is not a number."""
     return where(a > b, a, b)
 
 
 @inlined
 def smaller(a, b):
-    """The smaller of two, lane by lane; a where they are equal or one is not a number."""
+    """The smaller of two, lane by lane; a if they are equal or one is not a number."""
     return where(a > b, b, a)
 
 
@@ -367,7 +367,7 @@ def add_to(array, i, value):
 
 @inlined
 def raise_to(array, i, value):
-    """Replace vector i of an array by value in the lanes where value is larger."""
+    """Replace vector i of an array by value in the lanes in which value is larger."""
     store(array, i, larger(value, load(array, i)))
 
 

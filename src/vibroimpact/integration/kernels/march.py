@@ -90,7 +90,7 @@ def predict_rows(modal, state, u_free):
 
 @inlined
 def apply_drive(modal, drive, n, forces, fluid, work):
-    """Put the drive forces at the end of step n, and those of the fluid behind them, on their rows
+    """Put the drive forces at the end of step n, and the fluid forces behind them, on their rows
     and add G_d d to u_free.
     """
     for g in range(modal.row_start.size - 1):
@@ -181,8 +181,8 @@ def store_rows(modal, special, state, trace, u, work, quiet):
 
 @entry_point
 def initial_forces(modal, contact, laws, state, work):
-    """Fill state.row_force, row_deflection and those of the step before with the forces of contacts
-    and elements at the initial state.row_displacement and row_velocity.
+    """Fill state.row_force, row_deflection and their values of the step before with the forces of
+    contacts and elements at the initial state.row_displacement and row_velocity.
     """
     rows = state.row_velocity.size // LANES
     memory_weight = modal.velocity_weights[1]
@@ -203,10 +203,10 @@ def initial_forces(modal, contact, laws, state, work):
 
 @entry_point
 def march(modal, contact, laws, hold, fluid, state, tally, output, trace, work, drive):
-    """Integrate whole ticks of RATIO steps; the number of steps done, fewer where the run diverged.
+    """Integrate whole ticks of RATIO steps; the number of steps done, fewer if the run diverged.
 
-    drive (step, force_channel, lane) N: the force at the end of every step; see Hold for what the
-    channels of held sensors bring, and are given. Fills output.values (one column per tick: the
+    drive (step, force_channel, lane) N: the force at the end of every step; see Hold for the
+    input and output of the channels of held sensors. Fills output.values (one column per tick: the
     filter output centred BEHIND ticks before), adds to ``tally`` and advances ``state`` in place.
     """
     mode = flush_subnormals()

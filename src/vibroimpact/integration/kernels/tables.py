@@ -22,8 +22,8 @@ class Modal(NamedTuple):
     channels. ``shapes`` holds for each group a (row, mode of the group) matrix, flat, from
     ``shape_start``; ``row_compliance`` in the same way a (row, row) matrix.
 
-    Where each lane has a model of its own, shapes, row_compliance, the coefficients of the modes
-    and Output.shapes have a last axis of lanes.
+    If each lane has a model of its own, shapes, row_compliance, the coefficients of the modes and
+    Output.shapes have a last axis of lanes.
     """
 
     dt: float  # s
@@ -81,7 +81,7 @@ class Laws(NamedTuple):
     lobe_cosine: np.ndarray  # (law, lane) of the lobes' angle
     lobe_sine: np.ndarray  # (law, lane)
     gap: np.ndarray  # (law, lane) m
-    stiffness: np.ndarray  # (law, lane) N/m, 0 where the law is Hertz's
+    stiffness: np.ndarray  # (law, lane) N/m, 0 if the law is Hertz's
     hertz: np.ndarray  # (law, lane) N/m^1.5
     hunt_crossley: np.ndarray  # (law, lane) s/m
     damping: np.ndarray  # (law, lane) N s/m
@@ -104,7 +104,7 @@ class Laws(NamedTuple):
 
 
 class State(NamedTuple):
-    """What one step hands to the next. Modal displacements are in m kg^1/2."""
+    """The values that one step hands to the next. Modal displacements are in m kg^1/2."""
 
     q: np.ndarray  # (RATIO, mode, lane) of the last RATIO steps; step n at index n % RATIO
     q_next_free: np.ndarray  # (mode, lane) at the end of the next step without a force there
@@ -112,7 +112,7 @@ class State(NamedTuple):
     group_active: np.ndarray  # (group,) int64: 0 while nothing has moved the group's modes
     row_displacement: np.ndarray  # (row, lane) m
     row_displacement_before: np.ndarray  # (row, lane) m, one step before the last of a tick
-    row_velocity: np.ndarray  # (row, lane) m/s, only where there are Laws; see row_velocity
+    row_velocity: np.ndarray  # (row, lane) m/s, only if there are Laws; see row_velocity
     row_force: np.ndarray  # (row, lane) N, on the structure at the end of the last step
     row_force_before: np.ndarray  # (row, lane) N, one step earlier
     row_deflection: np.ndarray  # (row, lane) m, row compliance times row_force
@@ -173,7 +173,7 @@ class Work(NamedTuple):
 
 
 class Output(NamedTuple):
-    """What is recorded at the first decimated rate.
+    """The recorded output at the first decimated rate.
 
     An *entry* adds the modes of one group to one output channel. Entries come in whole blocks of
     CHANNEL_BLOCK; those that fill a block up add zeros to one channel behind the last.
@@ -206,12 +206,12 @@ class Hold(NamedTuple):
     gain: np.ndarray  # (sensor, sensor, lane) N s/m, dampers as the implicit step takes them
     measured: np.ndarray  # (sensor, lane) m, at the end of the last step
     difference: np.ndarray  # (sensor, lane) m, measured less model, one step earlier
-    memory: np.ndarray  # (sensor, lane) m/s, what row_velocity keeps of the last step
+    memory: np.ndarray  # (sensor, lane) m/s, kept by row_velocity from the last step
     rate: np.ndarray  # (sensor, lane) m/s, work space
 
 
 class Fluid(NamedTuple):
-    """Fluid-elastic forces, the force channels behind those of the drive; no rows: none acts."""
+    """Fluid-elastic forces, the force channels behind the drive's; no rows: none acts."""
 
     row_start: np.ndarray  # (fluid_row + 1,) first entry of each in `row`
     row: np.ndarray  # (entry,) a row of each group that moves it
@@ -224,7 +224,7 @@ class Fluid(NamedTuple):
     force: np.ndarray  # (fluid_row, lane) at the end of the last step, as all below
     displacement: np.ndarray  # (fluid_row, lane) one step earlier
     free: np.ndarray  # (fluid_row, lane) without forces at the end of the step
-    memory: np.ndarray  # (fluid_row, lane) what row_velocity keeps
+    memory: np.ndarray  # (fluid_row, lane) kept by row_velocity
     lag: np.ndarray  # (lag, lane) z, one step earlier
 
 
