@@ -11,6 +11,8 @@ from vibroimpact.integration import batch as integrate
 from vibroimpact.integration import kernel_layout as layout
 from vibroimpact.integration.batch import ENERGY_TERMS, Schedule, integrate_batch
 from vibroimpact.integration.contact_convergence import IntegrationError
+from vibroimpact.integration.every_step import integrate_every_step
+from vibroimpact.integration.kernels.decimation import RATIO
 from vibroimpact.integration.kernels.lanes import LANES
 
 GAP = 2.8886e-4
@@ -262,3 +264,16 @@ def test_divergence_names_time_and_place(study_model, short):
         match=r"diverged at t = 0\.0\d+ s of the record, contact point \d",
     ):
         march(study_model, short, force)
+
+
+def test_divergence_in_the_last_steps_is_seen(study_model):
+    points = len(study_model.support_of_point)
+    with pytest.raises(IntegrationError, match="diverged"):
+        integrate_every_step(
+            study_model,
+            81_920,
+            RATIO,
+            np.ones(1),
+            np.zeros((points, 2, 1)),
+            lambda first, count: np.full((count, 1, 1), np.nan),
+        )

@@ -203,7 +203,7 @@ def initial_forces(modal, contact, laws, state, work):
 
 @entry_point
 def march(modal, contact, laws, hold, fluid, state, tally, output, trace, work, drive):
-    """Integrate whole ticks of RATIO steps; the number of steps done, fewer if the run diverged.
+    """Integrate whole ticks of RATIO steps; the number of steps, without the tick that diverged.
 
     drive (step, force_channel, lane) N: the force at the end of every step; see Hold for the
     input and output of the channels of held sensors. Fills output.values (one column per tick: the
@@ -249,7 +249,7 @@ def march(modal, contact, laws, hold, fluid, state, tally, output, trace, work, 
             state.counter[STEPS_DONE] += 1
         if not tally_displacement(modal, state, contact, tally):
             restore_mode(mode)
-            return (at_tick + 1) * RATIO
+            return at_tick * RATIO
         filter_modes(modal, state, output, tick)
         finish_output(modal, state, output, tick, at_tick, work.channels)
     restore_mode(mode)
