@@ -4,6 +4,7 @@ far from it by trial.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -84,11 +85,10 @@ def screen(
 
 def _best_before(far: Sequence[Term], before: Sequence[Screened]) -> list[Term]:
     """Return the AGAIN terms of each effect and place that gained most before; all if none did."""
-    wanted, kept = set(far), {}
+    wanted, kept = set(far), defaultdict[str, list[Term]](list)
     for term in (each.point.terms[-1] for each in before):
-        own = kept.setdefault(term.name, [])
-        if term in wanted and len(own) < AGAIN:
-            own.append(term)
+        if term in wanted and len(kept[term.name]) < AGAIN:
+            kept[term.name].append(term)
     return [term for own in kept.values() for term in own] or list(far)
 
 
