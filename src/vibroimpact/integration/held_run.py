@@ -276,7 +276,7 @@ class _LaneLayout(ModalLayout):
 
 def _same_modes(one: ModalLayout, other: ModalLayout, dt: float) -> bool:
     """Return whether two layouts have the same modes, rows and sensors: models that differ in their
-    contacts alone. The kernel then reads one value for all lanes, in half the time.
+    contacts alone. The kernel then reads one value for all lanes, which is faster.
     """
     if one is other:
         return True
