@@ -30,6 +30,17 @@ def test_stretches_that_contradict_each_other_leave_two_rivals():
     assert found.verdict == "ambiguous" and len(found.leading) == 2
 
 
+@pytest.mark.parametrize(("spread", "verdict"), [(0.0, "gap+added_mass"), (8.0, "gap")])
+def test_a_second_effect_must_gain_beyond_the_error_of_the_difference(spread, verdict):
+    """It gains 0.3 apart in the mean of all bands; spread: of that from band to band."""
+    lines = np.full((1, 10), 20.0)
+    gains = 0.3 + spread * np.resize([0.1, -0.1], (1, 10))
+    one = replace(hypothesis(1.0, "gap@all"), change=0.0 * lines, lines=lines)
+    pair = hypothesis(1.3, "gap@all", "added_mass@arc_100_0mm")
+    found = decided(one, replace(pair, change=gains * lines, lines=lines))
+    assert "+".join(found.best.point.ids) == verdict
+
+
 def misfit(before, after, floor=1.0):
     """The distances of free runs in dB, before and after."""
     closed = None if before is None else closed_fraction(before, after, floor)
