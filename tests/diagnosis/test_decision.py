@@ -31,7 +31,7 @@ def test_stretches_that_contradict_each_other_leave_two_rivals():
 
 
 @pytest.mark.parametrize(("spread", "verdict"), [(0.0, "gap+added_mass"), (8.0, "gap")])
-def test_a_second_effect_must_gain_beyond_the_error_of_the_difference(spread, verdict):
+def test_a_second_effect_must_gain_beyond_its_error(spread, verdict):
     """It gains 0.3 apart in the mean of all bands; spread: of that from band to band."""
     lines = np.full((1, 10), 20.0)
     gains = 0.3 + spread * np.resize([0.1, -0.1], (1, 10))
