@@ -582,6 +582,7 @@ def test_a_config_can_not_be_changed():
 
 
 LOBES = {"kind": "lobes", "count": 3}
+STOPS = {"kind": "planes", "normals_deg": [0, 180]}
 
 
 @pytest.mark.parametrize(
@@ -591,6 +592,8 @@ LOBES = {"kind": "lobes", "count": 3}
         ("supports.0.profile", LOBES | {"depth_m": 1e20}, "supports[0].profile.depth_m = 1e+20"),
         ("supports.0.centre_offset_m", [0.005, 0.0], "times the clearance"),
         ("supports.0.profile", {"kind": "planes", "normals_deg": [10, 370]}, "there already"),
+        ("supports.0.profile", STOPS | {"extra_gap_m": [0.0]}, "has 1 values for 2 stops"),
+        ("supports.0.profile", STOPS | {"extra_gap_m": [0.0, 0.5]}, "profile.extra_gap_m = 0.5"),
     ],
 )
 def test_a_support_out_of_reach_or_twice_is_refused(study, place, value, told):

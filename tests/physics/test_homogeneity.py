@@ -29,6 +29,7 @@ MODELS = {
     "Hertz": ({"hertz_N_per_m15": 1.0e8}, {}, 0.0, False),
     "Hunt-Crossley": ({"hunt_crossley_s_per_m": 2.0}, {}, 0.0, False),
     "lobes": ({"profile": LOBES}, {}, 0.0, False),
+    "unequal stops": ({"profile": PLANES | {"extra_gap_m": [0.0, 5e-5]}}, {}, 0.0, False),
     "cubic": ({}, {"cubic_N_per_m3": 1.0e12}, 0.0, False),
     "quadratic": ({}, {"quadratic_N_per_m2": 1.0e7}, 0.0, False),
     "drag": ({}, {"drag_N_s2_per_m2": 50.0}, 0.0, False),
@@ -97,7 +98,7 @@ def test_every_term_of_a_force_law_has_been_judged():
     }
     no_force = {"land_point", "land_normal", "drag_partner"}
     for law, name, judged in (
-        (ContactLaws, "contact", {"gap", *homogeneity.CONTACT_TERMS}),
+        (ContactLaws, "contact", {"gap", "land_extra_gap", *homogeneity.CONTACT_TERMS}),
         (LocalLaws, "local", {*homogeneity.ELEMENT_TERMS}),
     ):
         columns = {field.name for field in dataclasses.fields(law)}

@@ -226,7 +226,7 @@ COUPLINGS = {
     "negative_damping": {"constant": 3.0, "frequency_Hz": 30.0},
 }
 PROFILES = {
-    "planes": {"normals_deg": [10.0, 170.0]},
+    "planes": {"normals_deg": [10.0, 170.0], "extra_gap_m": [1.0e-4, 2.0e-4]},
     "lobes": {"count": 3, "depth_m": 1e-3, "angle_deg": 20.0},
     "broached": {"lands": 3, "angle_deg": 20.0, "depth_m": 1e-3},
     "broached by normal": {"lands": 3, "normal": [0.0, 1.0, 0.3]},

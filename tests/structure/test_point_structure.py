@@ -31,6 +31,7 @@ CHAIN = {
     "grid": {"load_rms_N": [1.0], "gap_m": [1.0], "seeds": 1},
     "record": {"duration_s": 0.5, "every_step": True},
 }
+STOPS = {"kind": "planes", "normals_deg": [0.0, 180.0]}
 MASS, STIFFNESS = np.diag([2.0, 1.0]), np.array([[4.0e3, -1.0e3], [-1.0e3, 1.0e3]])
 
 
@@ -233,6 +234,53 @@ def test_a_gap_between_two_masses_opens_and_closes():
     assert np.array_equal(force < 0.0, relative > 1.0e-3) and (force < 0.0).any()
     energy = dict(zip(record["run_term"].values, record["run_energy"].values, strict=True))
     assert abs(energy["mechanical"] + energy["stored"]) < 1e-4 * 0.5 * 2.0 * 0.3**2
+
+
+def test_stops_at_unequal_distances_are_stops_off_centre():
+    """Stops at +1 mm and -1.6 mm, as a table and as a pair at 1.3 mm round -0.3 mm."""
+    ways = (
+        {"gap_m": 1.0e-3, "profile": STOPS | {"extra_gap_m": [0.0, 6.0e-4]}},
+        {"gap_m": 1.3e-3, "profile": STOPS, "centre_offset_m": [-3.0e-4, 0.0]},
+    )
+    table, offset = (
+        only_record(
+            chain(
+                supports=[{"name": "stops", "point": "a", "stiffness_N_per_m": 1.0e5} | way],
+                initial={"velocity_m_per_s": {"a": {"x": 0.3}}},
+            )
+        )
+        for way in ways
+    )
+    force = table["contact_force"].values
+    assert force.min() < 0.0 < force.max()
+    assert force == pytest.approx(offset["contact_force"].values, abs=1e-6 * force.max())
+
+
+def test_two_tubes_that_meet_are_one_with_a_wall_midway():
+    """Two equal masses that move as mirror images meet in the plane of symmetry: half the gap, and
+    a spring of half the length.
+    """
+    masses = [{"name": name, "mass_kg": 2.0} for name in ("a", "b")]
+    springs = [
+        {"between": ["ground", name], "stiffness_N_per_m": 8.0e4, "damping_N_s_per_m": 4.0}
+        for name in ("a", "b")
+    ]
+    structure = {"kind": "chain", "masses": masses, "springs": springs}
+    facing = {"name": "pair", "point": "a", "other_point": "b", "stiffness_N_per_m": 1.0e6}
+    wall = {"name": "pair", "point": "a", "stiffness_N_per_m": 2.0e6}
+    pair, alone = (
+        only_record(
+            chain(
+                structure=structure,
+                supports=[support | {"gap_m": gap, "profile": STOPS | {"normals_deg": [0.0]}}],
+                initial={"velocity_m_per_s": {"a": {"x": 0.3}, "b": {"x": -0.3}}},
+            )
+        )
+        for support, gap in ((facing, 2.0e-3), (wall, 1.0e-3))
+    )
+    force = pair["contact_force"].values
+    assert force.min() < -100.0
+    assert force == pytest.approx(alone["contact_force"].values, abs=1e-6 * -force.min())
 
 
 REFUSED = [

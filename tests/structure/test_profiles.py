@@ -38,8 +38,10 @@ def at_angles(*degrees):
     return np.column_stack([np.cos(angles), np.sin(angles)])
 
 
+OUTLINE = {"normals_deg": [0.0, 100.0, 200.0, 290.0], "extra_gap_m": [0.0, 1e-4, 2e-4, 5e-5]}
 LANDS = {
     "planes": ({"kind": "planes", "normals_deg": [0.0, 120.0]}, (0, 120)),
+    "an outline": ({"kind": "planes", **OUTLINE}, (0, 100, 200, 290)),
     "bars": ({"kind": "bars", "angle_deg": 30.0}, (30, 210)),
     "one bar": ({"kind": "bars", "angle_deg": 30.0, "sides": "one"}, (30,)),
     "bars, vector": ({"kind": "bars", "normal": [0.0, 2.0, 0.0]}, (90, 270)),
@@ -111,7 +113,7 @@ def penetrations(place, profile, gap):
     """Penetration of each land, or of the circle with lobes, from its definition."""
     normals = land_normals(profile, DIRECTIONS)
     if len(normals):
-        return normals @ place - gap
+        return normals @ place - gap - np.array(getattr(profile, "extra_gap_m", ()) or 0.0)
     count, depth, angle = lobes(profile, DIRECTIONS)
     theta = np.arctan2(place[1], place[0])
     return np.array([np.hypot(*place) - gap - depth * (1 - np.cos(count * (theta - angle))) / 2])

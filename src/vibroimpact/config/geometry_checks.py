@@ -261,15 +261,23 @@ def gaps(structure: Tube, grid: Grid, supports: Sequence[Support]) -> Problems:
             )
         elif gap * factor + depth > radius >= gap:
             yield (
-                f"{place}.profile.depth_m",
+                f"{place}.profile.{_beyond_the_gap(support)}",
                 depth,
                 f"makes the clearance {gap * factor + depth:.4g} m, larger than {told}: {RADIAL}",
             )
 
 
+def _beyond_the_gap(support: Support) -> str:
+    """Return the key of a profile that says how far it lies beyond the gap."""
+    return "extra_gap_m" if support.profile.kind == "planes" else "depth_m"
+
+
 def effective_gap(support: Support, grid: Grid) -> tuple[float, float, float]:
-    """Return (largest gap in m, largest factor of it, depth of the lobes in m) of a support."""
+    """Return (largest gap in m, largest factor of it, depth of lobes or extra gap in m) of a
+    support.
+    """
     depth = getattr(support.profile, "depth_m", None) or 0.0
+    depth = max([depth, *getattr(support.profile, "extra_gap_m", ())])
     if support.gap_m is not None:
         return support.gap_m, 1.0, depth
     if support.preload_N is not None:

@@ -72,6 +72,7 @@ def profile_normals(structure: Structure, supports: Sequence[Support]) -> Proble
         place = f"supports[{index}].profile"
         if isinstance(profile, Planes):
             yield from _stops_twice(f"{place}.normals_deg", profile.normals_deg)
+            yield from _extra_gaps(f"{place}.extra_gap_m", profile, support)
         if not isinstance(profile, Broached | Bars | Lattice):
             continue
         if isinstance(profile, Lattice) and profile.spacing_m > 0.0 and not tube:
@@ -85,6 +86,24 @@ def profile_normals(structure: Structure, supports: Sequence[Support]) -> Proble
             )
         elif profile.normal is not None:
             yield from _across(centreline, f"{place}.normal", profile.normal, support.at_m)
+
+
+def _extra_gaps(place: str, profile: Planes, support: Support) -> Problems:
+    """Yield a problem unless there is an extra gap for each stop, and no preload."""
+    given, stops = len(profile.extra_gap_m), len(profile.normals_deg)
+    if given not in (0, stops):
+        yield (
+            place,
+            list(profile.extra_gap_m),
+            f"has {given} values for {stops} stops: give one each",
+        )
+    if given and support.preload_N is not None:
+        yield (
+            place,
+            list(profile.extra_gap_m),
+            f"is given together with preload_N = {support.preload_N:g}, which presses every stop:"
+            " give gap_m, which may be negative, in place of preload_N",
+        )
 
 
 def _stops_twice(place: str, normals_deg: Sequence[float]) -> Problems:

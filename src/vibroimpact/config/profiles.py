@@ -50,9 +50,9 @@ class Drilled(Section):
 
 
 class Planes(Section):
-    """Flat stops, each at the distance of the gap from the obstacle's centre. The penetration of a
-    stop is n·d - gap, with n its normal and d the displacement from the obstacle's centre. One
-    stop alone is one-sided.
+    """Flat stops, each at the distance of the gap, plus its extra gap, from the obstacle's centre.
+    The penetration of a stop is n·d - gap, with n its normal and d the displacement from the
+    obstacle's centre. One stop alone is one-sided.
     """
 
     kind: Literal["planes"] = Field(description="This kind of profile.", examples=["planes"])
@@ -62,6 +62,12 @@ class Planes(Section):
         " stop at 0 limits motion in the positive sense of the first direction, a stop at 180 in"
         " the negative sense.",
         examples=[[0.0, 180.0]],
+    )
+    extra_gap_m: tuple[Non_negative, ...] = Field(
+        (),
+        description="Distance of each stop beyond the gap, one value per stop; none for 0. With it"
+        " the stops are the table of an outline: bars with unequal clearances, worn lands.",
+        examples=[[0.0, 1.0e-4]],
     )
 
 

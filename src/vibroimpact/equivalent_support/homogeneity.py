@@ -37,6 +37,8 @@ def effects_with_a_scale(model: ModalModel) -> list[str]:
     phrases += _at_supports(model, (model.centre_offset != 0.0).any(axis=1), "an offset in m")
     for column, term in CONTACT_TERMS.items():
         phrases += _at_supports(model, getattr(laws, column) != 0.0, term)
+    unequal = np.isin(np.arange(len(laws.gap)), laws.land_point[laws.land_extra_gap > 0.0])
+    phrases += _at_supports(model, unequal, "stops with an extra gap in m")
     for column, term in ELEMENT_TERMS.items():
         values = np.asarray(getattr(model.local_laws, column))
         phrases += [

@@ -77,8 +77,10 @@ def symmetric(model: ModalModel, gap_m: float) -> bool:
     if offset or np.any(model.constant_force) or np.any(laws.lobes % 2 == 1):
         return False
     for point in np.unique(laws.land_point):
-        normals = laws.land_normal[laws.land_point == point]
-        facing = np.all(np.isclose(normals[:, None], -normals[None]), axis=-1).any(axis=1)
+        own = laws.land_point == point
+        normals, extra = laws.land_normal[own], laws.land_extra_gap[own]
+        opposite = np.all(np.isclose(normals[:, None], -normals[None]), axis=-1)
+        facing = (opposite & np.isclose(extra[:, None], extra)).any(axis=1)
         if not facing.all():
             return False
     return True

@@ -261,6 +261,7 @@ class ModalLayout:
             [np.array(round_points, np.int64), np.asarray(special.land_point, np.int64)]
         )
         normal = np.concatenate([np.zeros((len(round_points), 2)), special.land_normal])
+        extra = np.concatenate([np.zeros(len(round_points)), special.land_extra_gap])
         columns = {name: values[point] for name, values in _contact_columns(model).items()}
         columns |= _element_columns(model)
         return Laws(
@@ -270,7 +271,7 @@ class ModalLayout:
             normal_1=np.outer(normal[:, 0], np.ones(self.lanes)),
             normal_2=np.outer(normal[:, 1], np.ones(self.lanes)),
             lobes=special.lobes[point].astype(np.int64),
-            gap=np.ascontiguousarray(self.gaps(gap)[point]),
+            gap=self.gaps(gap)[point] + extra[:, None],
             element_row=self.element_rows(),
             partner_row=self.partner_rows(),
             **{name: np.outer(values, np.ones(self.lanes)) for name, values in columns.items()},

@@ -49,6 +49,7 @@ MODEL_VARIABLES: dict[str, tuple[str | None, str, str]] = {
     "contact_laws_lobe_angle": ("rad", "direction of the first land of a lobed hole", ""),
     "contact_laws_land_point": ("1", "contact point of the flat land, from 0", ""),
     "contact_laws_land_normal": ("1", "unit vector from the hole's centre to the flat land", ""),
+    "contact_laws_land_extra_gap": ("m", "distance of the flat land beyond the gap", ""),
     "local_laws_stiffness": ("N m-1", "linear stiffness of the local element", ""),
     "local_laws_quadratic": ("N m-2", "quadratic stiffness of the local element", ""),
     "local_laws_cubic": ("N m-3", "cubic stiffness of the local element", ""),

@@ -53,9 +53,9 @@ def _connectors(point: ContactPoint, unit: UnitSystem) -> Iterator[Connector]:
     if not len(point.lands):
         point.require_circle("Abaqus")
         yield name, "RADIAL-THRUST", point.axes, _elasticity(point, unit, point.gap)
-    for number, normal in enumerate(point.lands, 1):
+    for number, (normal, gap) in enumerate(zip(point.lands, point.land_gaps, strict=True), 1):
         axes = np.array([normal, np.cross(point.axis, normal)])
-        table = [(0.0, -REACH * unit.length), *_elasticity(point, unit, point.land_gap(normal))]
+        table = [(0.0, -REACH * unit.length), *_elasticity(point, unit, gap)]
         yield f"{name}_{number}", "CARTESIAN", axes, table
 
 

@@ -57,8 +57,8 @@ def _obstacles(point: ContactPoint) -> Iterator[Obstacle]:
     if not len(point.lands):
         name = _outline_name(point) if point.lobes[0] else "CIRCLE"
         yield name, point.position + point.offset, point.gap, point.axes[1]
-    for normal in point.lands:
-        origin = point.position + (point.land_gap(normal) - FAR) * normal
+    for normal, gap in zip(point.lands, point.land_gaps, strict=True):
+        origin = point.position + (gap - FAR) * normal
         yield "PLANES", origin, FAR, normal
 
 

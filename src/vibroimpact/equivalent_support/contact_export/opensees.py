@@ -91,7 +91,7 @@ def _land(point: ContactPoint, number: int, unit: UnitSystem) -> str:
     """Return the tuple of a flat land."""
     normal = point.lands[number]
     across = np.cross(point.axis, normal)
-    gap = unit.length * point.land_gap(normal)
+    gap = unit.length * point.land_gaps[number]
     return f"({gap:.9e}, {_tuple(normal)}, {_tuple(across)})"
 
 

@@ -24,6 +24,7 @@ class ContactPoint:
     axes: (2, 3) unit vectors across the tube. offset: (3,) m, of the obstacle's centre.
     gap: m. stiffness: N/m. damping: N s/m. friction: Coulomb's coefficient. stick_stiffness: N/m.
     lands: (land, 3) normals of flat lands away from the centre; none for a round hole.
+    extra_gap: (land,) m, of the lands beyond the gap.
     lobes: number, depth in m and angle in rad of the lobes of a round hole; 0 lobes for a circle.
     """
 
@@ -34,6 +35,7 @@ class ContactPoint:
     gap: float
     stiffness: float
     lands: np.ndarray
+    extra_gap: np.ndarray | float = 0.0
     damping: float = 0.0
     friction: float = 0.0
     stick_stiffness: float = 0.0
@@ -57,9 +59,10 @@ class ContactPoint:
                 " centre_offset_m to 0, or export code_aster"
             )
 
-    def land_gap(self, normal: np.ndarray) -> float:
-        """Return the travel of the tube along a land's normal until it touches, m."""
-        return self.gap + float(normal @ self.offset)
+    @property
+    def land_gaps(self) -> np.ndarray:
+        """(land,) m: the travel of the tube along the normal of each land until it touches."""
+        return self.gap + self.extra_gap + self.lands @ self.offset
 
 
 @dataclass(frozen=True)
@@ -99,7 +102,7 @@ def contact_set(config: Config, model: ModalModel, gap_m: float) -> ContactSet:
     ]
     points = tuple(_point(model, point, number, gap_m) for point, number in enumerate(numbers))
     for point in points:
-        if min([point.gap, *map(point.land_gap, point.lands)]) < 0.0:
+        if min([point.gap, *point.land_gaps]) < 0.0:
             raise EquivalentError(
                 f"{point.name} touches at rest: an export of contact needs a gap that is not"
                 " negative on every side"
@@ -133,6 +136,7 @@ def _point(model: ModalModel, point: int, number: int, gap_m: float) -> ContactP
         friction=float(laws.friction[point]),
         stick_stiffness=float(laws.stick_stiffness[point]),
         lands=laws.land_normal[laws.land_point == point] @ axes,
+        extra_gap=laws.land_extra_gap[laws.land_point == point],
         lobes=(
             int(laws.lobes[point]),
             float(laws.lobe_depth[point]),

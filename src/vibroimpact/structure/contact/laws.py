@@ -14,7 +14,7 @@ import numpy as np
 class ContactLaws:
     """The terms of the contacts beyond an elastic circular obstacle.
 
-    All arrays but the last two are (contact_point,). With p the penetration in m:
+    All arrays but the last three are (contact_point,). With p the penetration in m:
 
     gap: m; NaN for the case's gap times the point's gap_factor.
     damping: N s/m; the force is max(0, k p + damping dp/dt).
@@ -27,6 +27,7 @@ class ContactLaws:
     land_point: (land,) int, the contact point of each flat land.
     land_normal: (land, 2) unit vectors away from the centre. A point with lands meets planes at the
         distance of its gap instead of the circle.
+    land_extra_gap: (land,) m, of the land beyond the gap of its point.
 
     Raises ValueError for columns of unequal length, values out of range or a land at a point that
     does not exist.
@@ -43,6 +44,7 @@ class ContactLaws:
     lobe_angle: np.ndarray
     land_point: np.ndarray
     land_normal: np.ndarray
+    land_extra_gap: np.ndarray
 
     @classmethod
     def neutral(cls, points: int) -> "ContactLaws":
@@ -52,6 +54,7 @@ class ContactLaws:
             "gap": np.full(points, np.nan),
             "land_point": np.zeros(0, int),
             "land_normal": np.zeros((0, 2)),
+            "land_extra_gap": np.zeros(0),
         }
         return cls(**columns)
 
@@ -81,6 +84,10 @@ class ContactLaws:
             len(self.land_point) and not np.allclose(np.hypot(*self.land_normal.T), 1.0)
         ):
             raise ValueError("land_normal must hold one unit vector (2,) per land")
+        if np.shape(self.land_extra_gap) != (len(self.land_point),) or not np.all(
+            self.land_extra_gap >= 0.0
+        ):
+            raise ValueError("land_extra_gap must hold one distance of at least 0 per land")
         if not set(np.unique(self.land_point)) <= set(range(points)):
             raise ValueError(
                 f"land_point {self.land_point.tolist()} names a contact point that is not among"
@@ -96,7 +103,11 @@ class ContactLaws:
         return ~special
 
     def with_columns(self, **columns: Any) -> "ContactLaws":
-        """Return the laws with some columns replaced; a number fills a column."""
+        """Return the laws with some columns replaced; a number fills a column. New lands have no
+        extra gap unless it is given.
+        """
+        if "land_point" in columns:
+            columns = {"land_extra_gap": np.zeros(len(columns["land_point"]))} | columns
         return replace(
             self,
             **{

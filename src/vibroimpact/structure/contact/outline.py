@@ -10,6 +10,8 @@ import numpy as np
 
 from vibroimpact.config.stage_settings import ConfigPart
 
+from .profiles import land_extra_gaps
+
 POINTS = 361  # of a curved outline: one per degree, ends included
 OPEN = 3.0  # reach if stops leave a side open, as a multiple of the farthest stop
 
@@ -29,7 +31,8 @@ def radial_gap(profile: ConfigPart, gap_m: float, angle: np.ndarray) -> np.ndarr
         normals = np.deg2rad(np.asarray(profile.normals_deg, dtype=float))
         ahead = np.cos(turn[..., None] - normals)
         facing = ahead > 1e-12
-        reach = np.divide(gap_m, ahead, out=np.full(ahead.shape, np.inf), where=facing)
+        distance = gap_m + land_extra_gaps(profile, len(normals))
+        reach = np.divide(distance, ahead, out=np.full(ahead.shape, np.inf), where=facing)
         return reach.min(axis=-1)
     if profile.kind == "lobes":
         wave = 1.0 - np.cos(profile.count * (turn - np.deg2rad(profile.angle_deg)))
@@ -57,7 +60,8 @@ def hole_outline(
     """
     wall = radius_m + scale * gap_m
     if profile.kind == "planes":
-        return _between_stops(profile.normals_deg, wall, reach_m or OPEN * wall)
+        walls = wall + scale * land_extra_gaps(profile, len(profile.normals_deg))
+        return _between_stops(profile.normals_deg, walls, reach_m or OPEN * walls.max())
     angle = np.linspace(0.0, 2.0 * np.pi, POINTS)
     return _polar(radius_m + scale * radial_gap(profile, gap_m, angle), angle)
 
@@ -76,13 +80,13 @@ def _polar(radius: np.ndarray, angle: np.ndarray) -> np.ndarray:
     return outline
 
 
-def _between_stops(normals_deg: ConfigPart, distance: float, reach: float) -> np.ndarray:
+def _between_stops(normals_deg: ConfigPart, distances: np.ndarray, reach: float) -> np.ndarray:
     """Return (point, 2): the part of a square of half side `reach` behind every stop.
 
     A square clipped by one half plane after the other (Sutherland and Hodgman, 1974).
     """
     outline = reach * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-    for normal in np.deg2rad(np.asarray(normals_deg, dtype=float)):
+    for normal, distance in zip(np.deg2rad(normals_deg), distances, strict=True):
         beyond = outline @ [np.cos(normal), np.sin(normal)] - distance
         kept = []
         for here, there, depth, next_depth in zip(

@@ -41,6 +41,11 @@ def land_normals(profile: ConfigPart, directions: np.ndarray, pair: int = 0) -> 
     return np.round(np.column_stack([np.cos(angles), np.sin(angles)]), ROUNDED)
 
 
+def land_extra_gaps(profile: ConfigPart, lands: int) -> np.ndarray:
+    """Return (land,) m: distances of the flat lands of a profile beyond the gap."""
+    return np.array(getattr(profile, "extra_gap_m", ()) or np.zeros(lands), float)
+
+
 def lobes(profile: ConfigPart, directions: np.ndarray) -> tuple[int, float, float]:
     """Return (number, depth in m, angle of the first land in rad) of lobes; zeros without.
 
@@ -61,7 +66,8 @@ def plain_profile(profile: ConfigPart, directions: np.ndarray, pair: int = 0) ->
     normals = land_normals(profile, directions, pair)
     if len(normals):
         angles = np.degrees(np.arctan2(normals[:, 1], normals[:, 0]))
-        return Planes(kind="planes", normals_deg=tuple(angles.tolist()))
+        extra = getattr(profile, "extra_gap_m", ())
+        return Planes(kind="planes", normals_deg=tuple(angles.tolist()), extra_gap_m=extra)
     count, depth, angle = lobes(profile, directions)
     if count:
         return Lobes(kind="lobes", count=count, depth_m=depth, angle_deg=float(np.degrees(angle)))

@@ -7,6 +7,7 @@ import numpy as np
 from vibroimpact.config.stage_settings import ConfigPart
 
 from .outline import radial_gap
+from .profiles import land_extra_gaps
 
 
 def support_gap(support: ConfigPart, gap_m: float) -> float:
@@ -36,7 +37,8 @@ def static_force(
     moved = np.asarray(displacement, dtype=float)
     if support.profile.kind == "planes":
         along = np.cos(np.deg2rad(np.asarray(support.profile.normals_deg, dtype=float)) - angle)
-        penetration = np.maximum(moved[:, None] * along - gap_m, 0.0)
+        gaps = gap_m + land_extra_gaps(support.profile, len(along))
+        penetration = np.maximum(moved[:, None] * along - gaps, 0.0)
         return (_elastic(support, penetration) * along).sum(axis=1)
     ahead, behind = radial_gap(support.profile, gap_m, np.array([angle, angle + np.pi]))
     depth = np.abs(moved) - np.where(moved >= 0.0, ahead, behind)

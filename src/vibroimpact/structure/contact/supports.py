@@ -11,7 +11,7 @@ from vibroimpact.geometry.directions import carried_directions, transverse_direc
 from vibroimpact.geometry.support_spans import contact_places
 
 from .laws import ContactLaws
-from .profiles import land_normals, lobes
+from .profiles import land_extra_gaps, land_normals, lobes
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,10 +146,12 @@ def contact_laws(supports: Sequence[ConfigPart], contact: ContactPoints) -> Cont
     rounded = np.array([lobes(profile, directions) for profile, directions, _ in shapes])
     columns |= zip(("lobes", "lobe_depth", "lobe_angle"), rounded.reshape(-1, 3).T, strict=True)
     lands = [land_normals(*shape) for shape in shapes]
+    extra = [land_extra_gaps(own[0], len(land)) for own, land in zip(shapes, lands, strict=True)]
     return ContactLaws(
         **{name: np.reshape(values, len(contact.support)) for name, values in columns.items()},
         land_point=np.repeat(np.arange(len(lands)), [len(normals) for normals in lands]),
         land_normal=np.concatenate([np.zeros((0, 2)), *lands]),
+        land_extra_gap=np.concatenate([np.zeros(0), *extra]),
     )
 
 
