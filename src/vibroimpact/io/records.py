@@ -1,4 +1,6 @@
-"""Reading and writing of netCDF files and tables. No other module opens them."""
+"""Reading and writing of netCDF files and tables. No other module opens them, but `hdf5` to look for
+damage.
+"""
 
 import csv
 import io
@@ -17,6 +19,7 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
+from .hdf5 import inspect_hdf5, is_hdf5
 from .whole_file import MAKE_AGAIN, RecordError, read_text, whole_file
 
 # The end of a label's name in a file. By the CF conventions (1.11, sections 5 and 6.1) only numbers
@@ -25,8 +28,6 @@ LABEL = "_name"
 # Seconds from the start of a record are not a date, which is what a dimension `time` stands for (CF
 # 4.4).
 TIME, TIME_IN_FILE = "time", "elapsed_time"
-HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
-HDF5_PLACES = (0, 512, 1024, 2048)
 # Limits of foreign files: a damaged one may claim any size, and memory is taken before it is read.
 MOST_PACKED = 1100  # deflate makes zeros 1032 times smaller
 MOST_READ, FLOAT_BYTES = 10**9, 8
@@ -283,7 +284,7 @@ def read_given_dataset(path: str | Path, described: Iterable[str] = ()) -> xr.Da
         raise RecordError(f"{path}: is no file: give the path of a netCDF file")
     with _foreign(path, "netCDF"):
         if is_hdf5(path):
-            _inspect_hdf5(path)
+            inspect_hdf5(path)
         with xr.open_dataset(
             path, engine="netcdf4", decode_times=False, decode_timedelta=False
         ) as dataset:
@@ -326,7 +327,7 @@ def read_numeric_variables(
     """
     with _foreign(path, "netCDF"):
         if is_hdf5(path):
-            _inspect_hdf5(path)
+            inspect_hdf5(path)
         with netCDF4.Dataset(path) as file:
             numeric = {
                 name: variable
@@ -374,7 +375,7 @@ def read_hdf5_arrays(path: str | Path) -> dict[str, np.ndarray]:
         found[label] = item
 
     with _foreign(path, "HDF5"):
-        _inspect_hdf5(path)
+        inspect_hdf5(path)
         with h5py.File(path, "r") as file:
             file.visititems(collect)
             _refuse_size(path, found, MOST_PACKED)
@@ -397,46 +398,6 @@ def _foreign(path: str | Path, kind: str) -> Iterator[None]:
             f"{path}: can not be read as {kind} ({why}): the file is damaged or of another kind,"
             " export it again"
         ) from error
-
-
-def is_hdf5(path: str | Path) -> bool:
-    """Return whether a file begins as HDF5 does, after a user block or none."""
-    with open(path, "rb") as file:
-        head = file.read(HDF5_PLACES[-1] + len(HDF5_SIGNATURE))
-    return any(head.startswith(HDF5_SIGNATURE, place) for place in HDF5_PLACES)
-
-
-def _inspect_hdf5(path: str | Path) -> None:
-    """Raise RecordError if an HDF5 file refers to another file, which would be read instead, or
-    if the type of its numbers is none that numpy has, as after damage: the values would differ.
-    """
-    import h5py
-
-    def refuse(name, what):
-        raise RecordError(
-            f"{path}: '{name}' refers to {what}, another file: only files of the folder itself are"
-            " read, store the numbers in this one"
-        )
-
-    def inspect_link(name, link):
-        if isinstance(link, h5py.ExternalLink):
-            refuse(name, f"'{link.filename}'")
-
-    def inspect_item(name, item):
-        if isinstance(item, h5py.Dataset) and item.external:
-            refuse(name, f"'{item.external[0][0]}'")
-        if isinstance(item, h5py.Dataset) and item.is_virtual:
-            refuse(name, "virtual sources")
-        if isinstance(item, h5py.Dataset) and item.dtype.kind in "fiu":
-            if not item.id.get_type().equal(h5py.h5t.py_create(item.dtype)):
-                raise RecordError(
-                    f"{path}: '{name}' holds numbers of an unknown type: the file is damaged,"
-                    " export it again"
-                )
-
-    with h5py.File(path, "r") as file:
-        file.visititems_links(inspect_link)
-        file.visititems(inspect_item)
 
 
 def _refuse_cut(path: str | Path) -> None:

@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from vibroimpact.io.foreign_arrays import ForeignFileError
+from vibroimpact.io.hdf5 import is_hdf5
 from vibroimpact.io.matlab_files import load_matlab
-from vibroimpact.io.records import MOST_READ, RecordError, is_hdf5, read_hdf5_arrays
+from vibroimpact.io.records import MOST_READ, RecordError, read_hdf5_arrays
 
 from .arrays import Arrays, signals_of_arrays
 from .signals import ImportProblem, Signal
