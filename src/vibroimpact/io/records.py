@@ -1,6 +1,4 @@
-"""Reading and writing of netCDF files and tables. No other module opens them, but `hdf5` to look for
-damage.
-"""
+"""Reading and writing of netCDF files and tables. Only `hdf5` opens them too, to find damage."""
 
 import csv
 import io
