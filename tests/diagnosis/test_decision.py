@@ -41,6 +41,18 @@ def test_a_second_effect_must_gain_beyond_its_error(spread, verdict):
     assert "+".join(found.best.point.ids) == verdict
 
 
+def test_a_second_effect_is_sought_with_other_firsts_too():
+    pair = hypothesis(1.2, "gap@all", "hertz@all")
+    singles = (
+        hypothesis(1.0, "gap@all"),
+        hypothesis(0.7, "gap@left"),
+        hypothesis(0.5, "hertz@all"),
+    )
+    assert Search(singles[0], (pair, *singles)).other_firsts == [singles[1]]
+    weak = (hypothesis(0.04, "gap@all"), hypothesis(0.03, "gap@left"))
+    assert Search(weak[0], weak).other_firsts == []
+
+
 def misfit(before, after, floor=1.0):
     """The distances of free runs in dB, before and after."""
     closed = None if before is None else closed_fraction(before, after, floor)

@@ -25,11 +25,13 @@ from vibroimpact.diagnosis.verdict.content import (
 )
 from vibroimpact.diagnosis.verdict.content import not_testable as not_testable_verdict
 from vibroimpact.diagnosis.verdict.misfit import makes_worse, not_offered
+from vibroimpact.effects.effect import Effect
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.io.records import write_record, write_table, write_text
 
 from .comparison import Comparison
 from .completed import completed_model, effect_rows
+from .constants import LEFT
 from .decision import Decision, ambiguity, beside_spectra, decide, far_off, gains, refuted
 from .evidence import evidence_of
 from .explanations import Point, Structure
@@ -43,7 +45,7 @@ from .measurement.attached_model import with_channel_points
 from .measurement.signals import Signals, signals_of
 from .measurement.usable import Refused, not_testable, usable
 from .next_measurement import next_measurement
-from .search import Hypothesis, Search, search
+from .search import Hypothesis, Search, search, search_from
 
 EFFORTS = {"quick": 1, "standard": 2, "thorough": 3}  # effects at once, at most
 REGIONS = 12
@@ -124,8 +126,14 @@ def run_diagnosis(
     except Refused as refusal:
         return Diagnosis(_refused(refusal, checks, provenance or {}, costs))
     with costs("floor"):
-        best = max(searched.hypotheses, key=lambda each: each.gain, default=searched.nothing)
-        level, floor = floor_of(comparison, best.fit)
+        level, floor = _level_and_floor(comparison, searched)
+    for first in searched.other_firsts if EFFORTS[effort] > 1 else ():
+        if not level - floor > LEFT:
+            break
+        with costs("search"):
+            searched = search_from(comparison, searched, first, _seen_effects(comparison), log)
+        with costs("floor"):
+            level, floor = _level_and_floor(comparison, searched)
     decision = decide(searched, level, floor)
     with costs("free runs"):
         if decision.verdict not in ("none", "unknown") and decision.best is not None:
@@ -146,9 +154,7 @@ def _searched(
     Some records hold the right model, but not one that lacks much. If nothing gains on the records
     that hold the given one, and its spectra are far off, the others are compared too.
     """
-    structure, signals = comparison.structure, comparison.signals
-    unseen = not_testable(structure.campaign)
-    effects = [each for each in EFFECTS.values() if each.reported not in unseen]
+    signals, effects = comparison.signals, _seen_effects(comparison)
     searched = search(comparison, most, effects, log)
     if comparison.lost and _far(runs, signals) and not gains(searched):
         log("nothing gains on the records that hold the model: the others are compared too")
@@ -157,6 +163,18 @@ def _searched(
         if gains(again):
             return wider, again
     return comparison, searched
+
+
+def _seen_effects(comparison: Comparison) -> list[Effect]:
+    """Return the effects of the catalogue that a campaign can show."""
+    unseen = not_testable(comparison.structure.campaign)
+    return [each for each in EFFECTS.values() if each.reported not in unseen]
+
+
+def _level_and_floor(comparison: Comparison, searched: Search) -> tuple[float, float]:
+    """Return the mean log power of the holding force with the best hypothesis, and its floor."""
+    best = max(searched.hypotheses, key=lambda each: each.gain, default=searched.nothing)
+    return floor_of(comparison, best.fit)
 
 
 def _far(runs: FreeRuns, signals: Signals) -> bool:

@@ -67,20 +67,20 @@ def screen(
         for location in locations(effect, structure.values, structure.names, across, along)
     ]
     far = [term for each in places for term in far_terms(*each, sizes)]
-    tried = [*_best_before(far, before), *sensor_terms(bench, base), *demanded]
+    terms = [*_best_before(far, before), *sensor_terms(bench, base), *demanded]
     wanted = {effect.id for effect in effects}
-    trials = [base.beside(term) for term in tried if term.effect_id in wanted]
+    trials = [base.beside(term) for term in terms if term.effect_id in wanted]
     neutral = [
         base.beside(term) for each in places if (term := neutral_term(*each, sizes)) is not None
     ]
     lines = holding_lines(bench, [base])[0]
     near = _near(bench, lines, neutral, sizes)
-    ranked = _ranked(bench, lines, trials + [point for own in near for point in own[:TRIED]])
-    ranked = _with_halfway(bench, lines, ranked, along)
+    tried = ranked(bench, lines, trials + [point for own in near for point in own[:TRIED]])
+    tried = _with_halfway(bench, lines, tried, along)
     ran = {_last(point) for own in near for point in own}
-    ran |= {_last(each.point) for each in ranked if np.isfinite(each.gain)}
+    ran |= {_last(each.point) for each in tried if np.isfinite(each.gain)}
     failed = {_last(point) for point in trials + neutral} - ran
-    return Screening(tuple(ranked), tuple(sorted(failed)))
+    return Screening(tuple(tried), tuple(sorted(failed)))
 
 
 def _best_before(far: Sequence[Term], before: Sequence[Screened]) -> list[Term]:
@@ -110,7 +110,7 @@ def _last(point: Point) -> str:
     return point.terms[-1].effect_id
 
 
-def _ranked(bench: Bench, lines: np.ndarray, points: Sequence[Point]) -> list[Screened]:
+def ranked(bench: Bench, lines: np.ndarray, points: Sequence[Point]) -> list[Screened]:
     """Return Screened of points, best first: all are tried on the stretch that shows them best, see
     `_first`, and those that gain most there on the others. lines (stretch, channel, line): of the
     base.

@@ -30,9 +30,10 @@ from .explanations import Point, Term
 from .gauss_newton import Fit, columns, fits
 from .measurement.usable import Refused
 from .plate_starts import plate_terms
-from .screening import Screened, Screening, screen
+from .screening import Screened, Screening, ranked, screen
 
 RACED, EXCHANGED, FINALISTS = 12, 4, 4
+RIVALS_AGAIN = 40  # of the first effect, tried again when a second one is known
 SCREENED_RIVALS = 0.1  # of the best gain of a screening, from which other effects are raced
 ONE_PLACE = 0.05  # of a tube's length: fits that end nearer are one
 CONTENDS = 0.6  # of the gain of the best fit, from which others are polished too
@@ -102,6 +103,13 @@ class Search:
     failed: tuple[str, ...] = ()
     screened: tuple[Screened, ...] = ()
 
+    @property
+    def other_firsts(self) -> list[Hypothesis]:
+        """Return the single effects that gain nearly as much as the best one, best first."""
+        singles = [each for each in self.hypotheses if len(each.point.terms) == 1]
+        least = CONTENDS * singles[0].gain if singles else 0.0
+        return [each for each in singles[1:] if each.worth > max(least, needed_gain(0.0))]
+
 
 @dataclass(frozen=True, eq=False)
 class _Benches:
@@ -124,23 +132,48 @@ def search(
 
     Raises Refused if the model as given can not be run.
     """
-    at = _Benches(
+    at = _benches(comparison, effects)
+    nothing = _nothing(at)
+    log(f"holding force as given, in mean log power: {nothing.fit.lines.size} lines are fitted")
+    return _forward(at, Search(nothing, ()), nothing, most, log)
+
+
+def search_from(
+    comparison: Comparison,
+    before: Search,
+    first: Hypothesis,
+    effects: Sequence[Effect] | None = None,
+    log: Callable[[str], None] = lambda text: None,
+) -> Search:
+    """Return a Search with the hypotheses of one more effect in addition to a first one, which
+    was not the best: of two effects that hide each other, the best single one may be neither.
+    """
+    log(f"one more effect in addition to {first.point.name}")
+    return _forward(_benches(comparison, effects), before, first, 1, log)
+
+
+def _benches(comparison: Comparison, effects: Sequence[Effect] | None) -> _Benches:
+    """Return the _Benches of a Comparison; effects: all of the catalogue if None."""
+    return _Benches(
         comparison,
         comparison.screened(),
         comparison.fitted(),
         comparison.apart(),
         list(EFFECTS.values()) if effects is None else effects,
     )
-    nothing = _nothing(at)
-    log(f"holding force as given, in mean log power: {nothing.fit.lines.size} lines are fitted")
-    found: dict[str, Hypothesis] = {}
-    base = nothing
-    failed: tuple[str, ...] = ()
-    screened: tuple[Screened, ...] = ()
+
+
+def _forward(
+    at: _Benches, before: Search, base: Hypothesis, most: int, log: Callable[[str], None]
+) -> Search:
+    """Return a Search with the hypotheses of up to `most` effects in addition to a base."""
+    nothing, screened = before.nothing, before.screened
+    found = {each.point.name: each for each in before.hypotheses}
+    failed = set(before.failed)
     for _ in range(most):
         screening = _screened(at, base.point, screened)
         screened = screened or screening.ranked
-        failed = tuple(sorted({*failed, *screening.failed}))
+        failed |= {*screening.failed}
         raced = _race(at, screening.ranked, base.point)
         if base.point.terms and not _promises(at, raced, base):
             break
@@ -158,8 +191,8 @@ def search(
             found |= {each.point.name: each for each in others}
             best = max([best, *others], key=_rated)
         base = best
-    ranked_found = sorted(found.values(), key=lambda each: -each.gain)
-    return Search(nothing, tuple(ranked_found), failed, screened)
+    hypotheses = sorted(found.values(), key=lambda each: -each.gain)
+    return Search(nothing, tuple(hypotheses), tuple(sorted(failed)), screened)
 
 
 def _nothing(at: _Benches) -> Hypothesis:
@@ -202,14 +235,14 @@ def _screened(at: _Benches, base: Point, before: Sequence[Screened]) -> Screenin
 
 
 def _race(
-    at: _Benches, ranked: Sequence[Screened], beside: Point, most: int = RACED
+    at: _Benches, screened: Sequence[Screened], beside: Point, most: int = RACED
 ) -> list[Screened]:
     """Return the best screened points after some passes of Gauss-Newton, best first, one of each
     effect and place. Stronger dampers widen the basin in which these find the right place.
 
     beside: Point without their last term. most: number of starts in the race.
     """
-    starts = _starts(at, ranked)[:most]
+    starts = _starts(at, screened)[:most]
     strong = replace(at.screened, strength=STRONGER * at.screened.strength)
     sizes = at.comparison.sizes
     rows = [effect_coordinates(own.terms, sizes) for own in starts]
@@ -230,17 +263,19 @@ def _race(
     return list(kept.values())
 
 
-def _starts(at: _Benches, ranked: Sequence[Screened]) -> list[Point]:
+def _starts(at: _Benches, screened: Sequence[Screened]) -> list[Point]:
     """Return the Points that a race begins from: the best of each effect, then another place or
     another value but the size, of effects that gain much. Many effects look alike until they are
     fitted, as all that takes the force off a support does: one of them would fill the race.
     """
     rate, sizes = at.comparison.signals.rate, at.comparison.sizes
-    outside = (each.gain for each in ranked if not within_priors(each.point.terms[-1], rate, sizes))
+    outside = (
+        each.gain for each in screened if not within_priors(each.point.terms[-1], rate, sizes)
+    )
     best = next(outside, 0.0)
     firsts: dict[str, Point] = {}
     seconds: dict[str, Point] = {}
-    for each in ranked:
+    for each in screened:
         term = each.point.terms[-1]
         first = firsts.get(term.effect_id)
         if not np.isfinite(each.gain):
@@ -352,20 +387,26 @@ def _without_first(
     log: Callable[[str], None],
 ) -> list[Hypothesis]:
     """Return Hypotheses in which the first effect of the best is dropped or, if that costs too
-    much, exchanged: it was chosen before the others were known, and may stand for another one.
+    much, exchanged: it was chosen before the others were known, and may stand for another one, or
+    for itself at another place.
 
-    screened: effects in addition to nothing, best first: the rivals of the first effect.
+    screened: effects in addition to nothing, best first: the rivals of the first effect, which are
+    tried again in addition to the others.
     """
     base = replace(best.point, terms=best.point.terms[1:])
     out = _kept(at, _finals(at, [base], nothing, polished=False), nothing)
     if not out or best.apart - out[0].apart >= needed_gain(out[0].apart):
-        known = {term.effect_id for term in best.point.terms}
+        dropped, *left = best.point.terms
+        known = {term.effect_id for term in left}
+        terms = (each.point.terms[-1] for each in screened)
         rivals = [
-            replace(each, point=base.beside(each.point.terms[-1]))
-            for each in screened
-            if each.point.terms[-1].effect_id not in known
+            base.beside(term)
+            for term in terms
+            if term.effect_id not in known and term.name != dropped.name
         ]
-        raced = _race(at, rivals, base, EXCHANGED)[:2]
+        lines = holding_lines(at.screened, [base])[0]
+        again = ranked(at.screened, lines, rivals[:RIVALS_AGAIN])
+        raced = _race(at, again, base, EXCHANGED)[:2]
         points = [each.point for each in raced]
         out += _kept(at, _finals(at, points, nothing, polished=False), nothing)
     for each in out:
