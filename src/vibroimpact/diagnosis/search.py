@@ -34,6 +34,7 @@ from .screening import Screened, Screening, ranked, screen
 
 RACED, EXCHANGED, FINALISTS = 12, 4, 4
 RIVALS_AGAIN = 40  # of the first effect, tried again when a second one is known
+SECONDS = 4  # of the starts of a race
 SCREENED_RIVALS = 0.1  # of the best gain of a screening, from which other effects are raced
 ONE_PLACE = 0.05  # of a tube's length: fits that end nearer are one
 CONTENDS = 0.6  # of the gain of the best fit, from which others are polished too
@@ -240,9 +241,9 @@ def _race(
     """Return the best screened points after some passes of Gauss-Newton, best first, one of each
     effect and place. Stronger dampers widen the basin in which these find the right place.
 
-    beside: Point without their last term. most: number of starts in the race.
+    beside: Point without their last term. most: number of effects in the race.
     """
-    starts = _starts(at, screened)[:most]
+    starts = _starts(at, screened, most)
     strong = replace(at.screened, strength=STRONGER * at.screened.strength)
     sizes = at.comparison.sizes
     rows = [effect_coordinates(own.terms, sizes) for own in starts]
@@ -263,10 +264,11 @@ def _race(
     return list(kept.values())
 
 
-def _starts(at: _Benches, screened: Sequence[Screened]) -> list[Point]:
-    """Return the Points that a race begins from: the best of each effect, then another place or
-    another value but the size, of effects that gain much. Many effects look alike until they are
-    fitted, as all that takes the force off a support does: one of them would fill the race.
+def _starts(at: _Benches, screened: Sequence[Screened], most: int) -> list[Point]:
+    """Return the Points that a race begins from: the best of each of `most` effects, and another
+    place or another value but the size, of SECONDS that gain much. Many effects look alike until
+    they are fitted, as all that takes the force off a support does: one of them would fill the
+    race. And the right place may look second best, if there is a second effect.
     """
     rate, sizes = at.comparison.signals.rate, at.comparison.sizes
     outside = (
@@ -286,7 +288,7 @@ def _starts(at: _Benches, screened: Sequence[Screened]) -> list[Point]:
             known = first.terms[-1]
             if (term.name, *term.values[1:]) != (known.name, *known.values[1:]):
                 seconds.setdefault(term.effect_id, each.point)
-    return [*firsts.values(), *seconds.values()]
+    return [*firsts.values()][:most] + [*seconds.values()][:SECONDS]
 
 
 def _where(term: Term, length: float) -> tuple:
