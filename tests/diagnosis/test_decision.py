@@ -83,7 +83,7 @@ def test_an_effect_that_leaves_spectra_far_off_is_refuted():
     assert found.verdict == "unknown" and found.something_else > 0.9 and not found.ranked
 
 
-def test_one_record_that_whirls_by_chance_refutes_nothing():
+def test_a_part_that_whirls_by_chance_refutes_nothing():
     named, far = decided(hypothesis(0.3, "quadratic_drag@tube")), misfit(14.0, 8.0)
     near = misfit(12.0, 1.1)
     assert beside_spectra(named, far, [near, near, far]).verdict == "named"

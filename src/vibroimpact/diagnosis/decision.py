@@ -122,7 +122,7 @@ def far_off(misfit: Mapping[str, float | None]) -> bool:
 def beside_spectra(
     decision: Decision,
     misfit: Mapping[str, float | None],
-    by_record: Sequence[Mapping[str, float | None]] = (),
+    parts: Sequence[Mapping[str, float | None]] = (),
     surely_off: bool = False,
 ) -> Decision:
     """Return the Decision given the distances of free runs.
@@ -133,8 +133,9 @@ def beside_spectra(
     that leaves spectra off by more than chance explains only a part.
 
     misfit: {before_dB, after_dB, floor_dB, closed_fraction} of held-out records, None if unknown.
-    by_record: the same of each record: in a single one, whirling may be chance. surely_off: whether
-    a held-out record is off by more than chance, see free_runs.surely_off.
+    parts: the same of each record and channel: in a record, or across the force, whirling may be
+    chance. surely_off: whether a held-out record is off by more than chance, see
+    free_runs.surely_off.
     """
     before, after, floor = misfit["before_dB"], misfit["after_dB"], misfit["floor_dB"]
     if before is None or after is None or floor is None:
@@ -152,7 +153,7 @@ def beside_spectra(
     if makes_worse(misfit):
         return refuted(decision, in_favour_of_nothing=closed is None)
     far = after - floor > 2.0 * constants.FREE_EXCESS_DB and (closed or 0.0) < constants.PARTLY
-    far = far and _most_stay_off(by_record or [misfit])
+    far = far and _most_stay_off(parts or [misfit])
     if decision.verdict == "partly_explained":
         return decision
     return refuted(decision) if far else _in_part(decision) if surely_off else decision
@@ -170,12 +171,12 @@ def _in_part(decision: Decision) -> Decision:
     )
 
 
-def _most_stay_off(by_record: Sequence[Mapping[str, float | None]]) -> bool:
-    """Return whether most records whose spectra are far off before or after completion keep most
-    of their excess.
+def _most_stay_off(parts: Sequence[Mapping[str, float | None]]) -> bool:
+    """Return whether most parts whose spectra are far off before or after completion keep most of
+    their excess.
     """
     off = stay = 0
-    for row in by_record:
+    for row in parts:
         before, after, floor = row["before_dB"], row["after_dB"], row["floor_dB"]
         if before is None or after is None or floor is None:
             continue

@@ -36,7 +36,7 @@ from .decision import Decision, ambiguity, beside_spectra, decide, far_off, gain
 from .evidence import evidence_of
 from .explanations import Point, Structure
 from .floor import floor_of
-from .free_runs import FreeRuns, distance, free_runs, regions, surely_off, with_after
+from .free_runs import FreeRuns, distance, distances, free_runs, regions, surely_off, with_after
 from .free_search import free_search
 from .identified.identified import PREDICTION, Identified, identified
 from .identified.search import left_and_floor, search_laws
@@ -369,8 +369,7 @@ def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
 def _verified(found: _Found, told: dict[str, Any]) -> Decision:
     """Return the Decision given the distances of free runs."""
     if found.comparison is not None:
-        records = range(len(found.signals.load))
-        rows = [distance(found.runs, found.signals, [record]) for record in records]
+        rows = distances(found.runs, found.signals)
         return beside_spectra(found.decision, told, rows, _surely_off(found))
     worse = found.decision.verdict not in ("none", "unknown") and makes_worse(told)
     return refuted(found.decision) if worse else found.decision

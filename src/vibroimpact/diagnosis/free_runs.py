@@ -166,14 +166,25 @@ def distance(
     runs: FreeRuns, signals: Signals, records: Sequence[int] | np.ndarray
 ) -> dict[str, float | None]:
     """Return {before_dB, after_dB, floor_dB, closed_fraction} over records."""
+    return _distance(_in_bands(runs, signals), records, range(len(signals.names)))
+
+
+def distances(runs: FreeRuns, signals: Signals) -> list[dict[str, float | None]]:
+    """Return the rows of `distance` of each record and channel."""
     cells = _in_bands(runs, signals)
-    chosen = cells["known"][records]
+    records, channels = range(len(signals.load)), range(len(signals.names))
+    return [_distance(cells, [each], [channel]) for each in records for channel in channels]
+
+
+def _distance(cells, records, channels):
+    """Return `distance` over records and channels of the cells of _in_bands."""
+    chosen = cells["known"][records][:, channels]
     if not chosen.any():
         return dict.fromkeys(("before_dB", "after_dB", "floor_dB", "closed_fraction"))
-    measured = cells["measured"][records]
+    measured = cells["measured"][records][:, channels]
     away, floors = [], []
     for name in ("before", "after"):
-        power = cells[name][records]
+        power = cells[name][records][:, :, channels]
         floors.append(_floor(power, chosen))
         mean = _mean(power, axis=1)
         own = floors[-1] * np.sqrt((1.0 - 1.0 / SEEDS) / 2.0)
