@@ -24,7 +24,7 @@ STRETCH_S, SCREENED_S = 4.0, 2.8  # of a stretch that is fitted, and of one that
 LEAST_GAIN, LEAST_SHARE = 0.05, 0.05
 
 # Log power over the floor, with which other effects than the best get a second one. Right verdicts
-# of two draws left up to 0.6, and misses 1.3 to 3.7.
+# of two draws left up to 0.6 (one 1.45), and misses 1.3 to 3.7.
 LEFT = 1.0
 
 # Decision: gains in mean log power on stretches that took no part.
