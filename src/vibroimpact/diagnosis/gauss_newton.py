@@ -2,7 +2,10 @@
 
 With r the whitened lines, J their derivative and z the coordinates over their prior sigma, it
 lowers misfit + z² / 2: the step solves (2 J^H J + 1 / sd²) dx = -(2 J^H r + x / sd²). Held to the
-measurement, r is a smooth function even if the free motion is chaotic.
+measurement, r is a smooth function even if the free motion is chaotic. A step of a coordinate of
+an effect has a prior of its own, LARGEST_STEP: a coordinate that the lines do not show would take
+any step, and leave none for the others. Where a wrong model is not held, derivatives mean nothing
+and are large: the step that the lowest load alone asks for is tried as well.
 """
 
 from __future__ import annotations
@@ -17,7 +20,7 @@ from .constants import INDEPENDENT
 from .coordinates import Coordinate, bounds, to_point, to_vector
 from .explanations import Point
 
-SHARES = (1.0, 0.5, 0.2)  # of a step, run side by side
+SHARES = (1.0, 0.4)  # of a step, run side by side, and beside the step by the lowest load alone
 LARGEST_STEP = 1.0  # of the coordinate of an effect
 TRIES = 3
 SETTLED = 2.0e-3  # gain per effective line, below which it ends
@@ -136,17 +139,14 @@ def _fit(
         if moved:
             slope[renewed] = _derivatives((yield moved), lines, size)
         weight = whitening(bench, lines)
-        white = (slope * weight).reshape(len(rows), -1)
-        information = 2.0 * INDEPENDENT * (white.conj() @ white.T).real.astype(float)
-        information += np.diag(1.0 / sd**2)
-        pull = 2.0 * INDEPENDENT * (white.conj() @ (lines * weight).ravel()).real + x / sd**2
+        white, residual = slope * weight, lines * weight
+        information, pull = _normal(white, residual, x, sd)
+        lowest = _normal(white[:, :1], residual[:1], x, sd)
         before = value
         for _ in range(TRIES):
-            step = -np.linalg.lstsq(
-                information + damping * np.diag(np.diag(information)), pull, rcond=None
-            )[0]
-            step /= max(1.0, np.abs(step[own]).max(initial=0.0) / LARGEST_STEP)
+            step = _step(information, pull, damping, own)
             tried = [np.clip(x + share * step, low, high) for share in SHARES]
+            tried.append(np.clip(x + _step(*lowest, damping, own), low, high))
             points = [to_point(each, rows, start) for each in tried]
             found = yield points
             values = [
@@ -162,3 +162,20 @@ def _fit(
         if before - value < settled:
             break
     return Fit(point, tuple(rows), x, lines, value, information)
+
+
+def _normal(white, residual, x, sd):
+    """Return (information (coordinate, coordinate), pull (coordinate,)) of whitened derivatives
+    (coordinate, stretch, channel, line), a residual and the priors.
+    """
+    rows = white.reshape(len(white), -1)
+    information = 2.0 * INDEPENDENT * (rows.conj() @ rows.T).real.astype(float)
+    pull = 2.0 * INDEPENDENT * (rows.conj() @ residual.ravel()).real
+    return information + np.diag(1.0 / sd**2), pull + x / sd**2
+
+
+def _step(information, pull, damping, own):
+    """Return the step (coordinate,); own: coordinates of effects, at most LARGEST_STEP in each."""
+    held = damping * np.diag(information) + own / LARGEST_STEP**2
+    step = -np.linalg.lstsq(information + np.diag(held), pull, rcond=None)[0]
+    return step / max(1.0, np.abs(step[own]).max(initial=0.0) / LARGEST_STEP)
