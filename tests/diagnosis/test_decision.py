@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from vibroimpact.diagnosis.decision import ambiguity, beside_spectra, decide
+from vibroimpact.diagnosis.decision import ambiguity, beside_spectra, counted, decide
 from vibroimpact.diagnosis.explanations import Point, Term
 from vibroimpact.diagnosis.search import Hypothesis, Search
 from vibroimpact.diagnosis.verdict.misfit import closed_fraction
@@ -74,6 +74,13 @@ def test_nothing_is_not_said_beside_spectra_that_are_far_off(before, verdict):
     found = beside_spectra(decided(), misfit(before, before))
     assert found.verdict == verdict
     assert (found.nothing > 0.9) == (verdict == "none") == (found.something_else < 0.1)
+
+
+def test_nothing_added_is_judged_by_the_records_farther_off():
+    near, far = misfit(1.2, 1.2), misfit(5.3, 5.3)
+    assert counted(decided(), {"fit": far, "holdout": near}) is far
+    assert counted(decided(), {"fit": far, "holdout": None}) is far
+    assert counted(decided(hypothesis(1.0, "gap@all")), {"fit": far, "holdout": near}) is near
 
 
 def test_an_effect_that_leaves_spectra_far_off_is_refuted():

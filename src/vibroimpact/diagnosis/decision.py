@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from operator import attrgetter
+from typing import Any
 
 import numpy as np
 from scipy.special import expit
@@ -115,8 +116,24 @@ def far_off(misfit: Mapping[str, float | None]) -> bool:
     """Return whether spectra of free runs are far above their floor after completion, or missing;
     misfit: {after_dB, floor_dB}.
     """
+    return _above_floor(misfit) > constants.FREE_EXCESS_DB
+
+
+def counted(decision: Decision, misfits: Mapping[str, Any]) -> Mapping[str, float | None]:
+    """Return the distances of free runs that a Decision is judged by, of {fit, holdout}: of the
+    held-out records or, if nothing was added, of the records that are farther off: then none of
+    them took part.
+    """
+    known = [own for own in misfits.values() if own and own["before_dB"] is not None]
+    if decision.verdict == "none" and known:
+        return max(known, key=_above_floor)
+    return misfits["holdout"] or misfits["fit"]
+
+
+def _above_floor(misfit: Mapping[str, float | None]) -> float:
+    """Return by how much spectra are above their floor after completion, dB; inf if missing."""
     after, floor = misfit["after_dB"], misfit["floor_dB"]
-    return after is None or floor is None or after - floor > constants.FREE_EXCESS_DB
+    return np.inf if after is None or floor is None else after - floor
 
 
 def beside_spectra(

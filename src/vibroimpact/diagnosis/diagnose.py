@@ -32,7 +32,16 @@ from vibroimpact.io.records import write_record, write_table, write_text
 from .comparison import Comparison
 from .completed import completed_model, effect_rows
 from .constants import LEFT
-from .decision import Decision, ambiguity, beside_spectra, decide, far_off, gains, refuted
+from .decision import (
+    Decision,
+    ambiguity,
+    beside_spectra,
+    counted,
+    decide,
+    far_off,
+    gains,
+    refuted,
+)
 from .evidence import evidence_of
 from .explanations import Point, Structure
 from .floor import floor_of
@@ -321,7 +330,7 @@ def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
     verdict is unknown and states it as withdrawn, or is none if there was no excess.
     """
     misfits, effects, withdrawn = _misfits(found), _effects(found), None
-    decision = _verified(found, misfits["holdout"] or misfits["fit"])
+    decision = _verified(found, misfits)
     if decision.verdict == "none" and effects:  # refuted, and nothing is missing
         found = replace(found, decision=decision, runs=replace(found.runs, after=found.runs.before))
         misfits, effects = _misfits(found), []
@@ -366,8 +375,9 @@ def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
     )
 
 
-def _verified(found: _Found, told: dict[str, Any]) -> Decision:
-    """Return the Decision given the distances of free runs."""
+def _verified(found: _Found, misfits: dict[str, Any]) -> Decision:
+    """Return the Decision given the distances of free runs; misfits: of the splits."""
+    told = counted(found.decision, misfits)
     if found.comparison is not None:
         rows = distances(found.runs, found.signals)
         return beside_spectra(found.decision, told, rows, _surely_off(found))
