@@ -7,6 +7,7 @@ from tests.support.straight_path import straight_path
 from vibroimpact.diagnosis.bench import holding_lines
 from vibroimpact.diagnosis.catalogue import far_terms, halfway, locations
 from vibroimpact.diagnosis.explanations import Point, Term
+from vibroimpact.diagnosis.screening import Screened, trials_again
 from vibroimpact.effects.registry import EFFECTS
 
 TUBE = {"kind": "tube", "outer_diameter_m": 0.02, "wall_thickness_m": 0.001}
@@ -23,6 +24,14 @@ def test_every_effect_has_trials_that_can_be_run(comparison):
         if not np.isfinite(lines).reshape(len(lines), -1).all(axis=1).any():
             failed.append(effect.id)
     assert failed == []
+
+
+def test_few_trials_of_an_effect_are_all_tried_again():
+    """What gained most before another effect was known may be the wrong value."""
+    few = [Term("gap", "all", (value,)) for value in (0.4, 0.65, 1.5, 2.5)]
+    many = [Term("clearance", "arc_300_0mm", (1e-5 * gap, 1e5)) for gap in range(1, 40)]
+    before = [Screened(Point((term,)), 1.0) for term in (*many, *few[::-1])]
+    assert set(trials_again([*few, *many], before)) == {*few, *many[:2]}
 
 
 @pytest.mark.parametrize("effect", ["hertz", "foliate_trefoil", "gap"])

@@ -73,7 +73,11 @@ FAR: dict[str, Sequence[tuple[float, ...]]] = {
     "support_offset": _ways(0.6, 1.2),  # within the gap, and pressed
     "preload": _ways(1.5, 4.0),
     "hertz": [(4.0e-3,), (0.02,), (0.1,)],
-    "root_stiffness": [(100.0, 3.0), (1.0e4, 30.0)],
+    # from pinned ends to clamped ones
+    "root_stiffness": [
+        (100.0, 3.0),
+        *((1.0e4, float(turn)) for turn in np.geomspace(0.2, 20.0, 9)),
+    ],
     "saturation_stiffness": [(2.0, 1.0)],
     "clearance": [(0.2, 4.0), (0.6, 4.0), (0.3, 100.0)],
     "one_sided_stop": [(0.2, 4.0), (0.5, 4.0), (1.0, 4.0), (0.2, 100.0), (0.6, 100.0)],

@@ -17,7 +17,7 @@ STRENGTH = 5.0  # of the dampers, over the impedance of the structure at its sen
 # model repeat from line to line, as noise does not.
 INDEPENDENT = 0.1
 FORGET_S = 0.7  # of a stretch: until its unknown start is forgotten
-STRETCH_S, SCREENED_S = 4.0, 2.8  # of a stretch that is fitted, and of one that is screened
+STRETCH_S, SCREENED_S = 4.0, 2.2  # of a stretch that is fitted, and of one that is screened
 
 # Gain in mean log power, on stretches that took no part, that one more effect must bring: at least,
 # and as a share of the gain without it.

@@ -4,7 +4,7 @@ far from it by trial.
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -14,6 +14,7 @@ from vibroimpact.effects.effect import Effect
 
 from .bench import Bench, holding_lines, misfit, whitening
 from .catalogue import far_terms, halfway, locations, neutral_term, parts
+from .constants import INDEPENDENT
 from .coordinates import Coordinate, bounds, effect_coordinates, to_point, to_vector
 from .explanations import Point, Term
 from .sensor_starts import sensor_terms
@@ -21,7 +22,7 @@ from .sensor_starts import sensor_terms
 AT_A_TIME = 256  # points whose lines are held in memory
 TRIED = 12  # of the points that derivatives predict, on each stretch
 KEPT, FEWEST_KEPT = 0.3, 40  # of the points: those that are tried on all stretches
-AGAIN = 2  # values of an effect at a place, when one more effect is sought
+AGAIN, MANY = 2, 24  # values at a place of an effect with MANY trials, when one more is sought
 BETWEEN = 10  # effects whose best point is tried half way to the next ones
 FARTHEST_STEP = 1.5  # of a coordinate, from the neutral value of the effect
 
@@ -57,8 +58,8 @@ def screen(
     """Return the Screening of effects at all places in addition to the terms of a Point.
 
     sizes, across, along: see Comparison. demanded: more terms to try. before: Screened in addition
-    to nothing, best first: of the values of an effect at a place that are far from neutral, only
-    the AGAIN that gained most are tried again.
+    to nothing, best first: of an effect with MANY values far from neutral, only the AGAIN at each
+    place that gained most are tried again.
     """
     structure = bench.structure
     places = [
@@ -67,7 +68,7 @@ def screen(
         for location in locations(effect, structure.values, structure.names, across, along)
     ]
     far = [term for each in places for term in far_terms(*each, sizes)]
-    terms = [*_best_before(far, before), *sensor_terms(bench, base), *demanded]
+    terms = [*trials_again(far, before), *sensor_terms(bench, base), *demanded]
     wanted = {effect.id for effect in effects}
     trials = [base.beside(term) for term in terms if term.effect_id in wanted]
     neutral = [
@@ -83,11 +84,15 @@ def screen(
     return Screening(tuple(tried), tuple(sorted(failed)))
 
 
-def _best_before(far: Sequence[Term], before: Sequence[Screened]) -> list[Term]:
-    """Return the AGAIN terms of each effect and place that gained most before; all if none did."""
+def trials_again(far: Sequence[Term], before: Sequence[Screened]) -> list[Term]:
+    """Return the terms but those of an effect with MANY, of which the AGAIN at each place remain
+    that gained most before; all if there was none before.
+    """
+    count = Counter(term.effect_id for term in far)
     wanted, kept = set(far), defaultdict[str, list[Term]](list)
     for term in (each.point.terms[-1] for each in before):
-        if term in wanted and len(kept[term.name]) < AGAIN:
+        few = count[term.effect_id] <= MANY or len(kept[term.name]) < AGAIN
+        if term in wanted and few:
             kept[term.name].append(term)
     return [term for own in kept.values() for term in own] or list(far)
 
@@ -236,7 +241,8 @@ def _derivatives(bench, white, weight, points, rows_of):
 
 def _best_step(white, residual):
     """Return (coordinate,) the least-squares step, no longer than FARTHEST_STEP."""
-    normal = (white.conj() @ white.T).real.astype(float)
-    pull = (white.conj() @ residual).real.astype(float)
-    step = -np.linalg.lstsq(normal, pull, rcond=1.0e-6)[0]
+    normal = 2.0 * INDEPENDENT * (white.conj() @ white.T).real.astype(float)
+    pull = 2.0 * INDEPENDENT * (white.conj() @ residual).real.astype(float)
+    held = np.eye(len(normal)) / FARTHEST_STEP**2
+    step = -np.linalg.lstsq(normal + held, pull, rcond=None)[0]
     return step / max(1.0, np.abs(step).max(initial=0.0) / FARTHEST_STEP)

@@ -35,6 +35,7 @@ from .screening import Screened, Screening, ranked, screen
 RACED, EXCHANGED, FINALISTS = 12, 4, 4
 RIVALS_AGAIN = 40  # of the first effect, tried again when a second one is known
 SECONDS = 4  # of the starts of a race
+VALUES = 4  # at most, from which a fit may begin
 SCREENED_RIVALS = 0.1  # of the best gain of a screening, from which other effects are raced
 ONE_PLACE = 0.05  # of a tube's length: fits that end nearer are one
 CONTENDS = 0.6  # of the gain of the best fit, from which others are polished too
@@ -176,9 +177,10 @@ def _forward(
         screened = screened or screening.ranked
         failed |= {*screening.failed}
         raced = _race(at, screening.ranked, base.point)
-        if base.point.terms and not _promises(at, raced, base):
+        if not _promises(at, raced, base):
             break
-        new = _kept(at, _finals(at, [each.point for each in raced[:FINALISTS]], nothing), nothing)
+        starts = _fitted_from(at, raced[:FINALISTS], screening.ranked)
+        new = _kept(at, _finals(at, starts, nothing), nothing)
         found |= {each.point.name: each for each in new}
         if not new:
             break
@@ -291,6 +293,24 @@ def _starts(at: _Benches, screened: Sequence[Screened], most: int) -> list[Point
     return [*firsts.values()][:most] + [*seconds.values()][:SECONDS]
 
 
+def _fitted_from(
+    at: _Benches, raced: Sequence[Screened], screened: Sequence[Screened]
+) -> list[Point]:
+    """Return the Point that each fit begins from: the raced one, or another value that gained
+    nearly as much in screening, whichever is best on the stretches that are fitted. The lowest load
+    is among these, and shows a linear structure best.
+    """
+    length, chosen = at.comparison.sizes["tube_length"], []
+    for each in raced:
+        where, least = _where(each.point.terms[-1], length), CONTENDS * each.gain
+        others = (own for own in screened if own.gain >= least)
+        alike = [own.point for own in others if _where(own.point.terms[-1], length) == where]
+        chosen.append([each.point, *alike[:VALUES]])
+    lines = iter(holding_lines(at.fitted, [point for own in chosen for point in own]))
+    values = [[misfit(at.fitted, next(lines)) for _ in own] for own in chosen]
+    return [own[int(np.argmin(value))] for own, value in zip(chosen, values, strict=True)]
+
+
 def _where(term: Term, length: float) -> tuple:
     """Return a key that fits of one effect at one place share; length: of the tube, m."""
     arc = arc_length_m(term.location)
@@ -315,7 +335,9 @@ def _finals(
         best = min(each.objective for each in found)
         spare = 0.0 if nothing is None else max(nothing.fit.objective - best, 0.0)
         least = best + (1.0 - CONTENDS) * spare
-        found = [_polished(at, each) if each.objective <= least else each for each in found]
+        promise = PROMISING * needed_gain(0.0) * effective_lines(at.fitted, found[0].lines)
+        if nothing is None or spare > promise:
+            found = [_polished(at, each) if each.objective <= least else each for each in found]
     return _hypotheses(at, found, nothing)
 
 
