@@ -139,10 +139,8 @@ def holding_lines(bench: Bench, points: Sequence[Point]) -> np.ndarray:
     It is multiplied by the gain of the channel, which makes it a residual of the measured values.
     NaN for a Point that could not be run.
     """
-    rate = bench.schedule.sampling_frequency
-    first, channels = int(FORGET_S * rate), len(bench.structure.names)
-    frequency = np.fft.rfftfreq(bench.schedule.samples - first, 1.0 / rate)
-    inside = (frequency >= bench.band[0]) & (frequency <= bench.band[1])
+    first, channels = int(FORGET_S * bench.schedule.sampling_frequency), len(bench.structure.names)
+    inside = _inside(bench, _frequencies(bench))
     shape = (len(points), len(bench.stretches), channels, int(inside.sum()))
     out = np.full(shape, np.nan, np.complex64)
     runs, index = _runs(bench, points)
@@ -154,6 +152,23 @@ def holding_lines(bench: Bench, points: Sequence[Point]) -> np.ndarray:
     out[index >= 0] = found[index[index >= 0]]
     gain = np.stack([bench.structure.measuring(point).gain for point in points])
     return out * gain[:, None, :, None].astype(np.float32)
+
+
+def _frequencies(bench: Bench) -> np.ndarray:
+    """Return (frequency,) Hz of a run, once its start is forgotten."""
+    rate = bench.schedule.sampling_frequency
+    return np.fft.rfftfreq(bench.schedule.samples - int(FORGET_S * rate), 1.0 / rate)
+
+
+def _inside(bench: Bench, frequency: np.ndarray) -> np.ndarray:
+    """Return (frequency,) bool: in the band."""
+    return (frequency >= bench.band[0]) & (frequency <= bench.band[1])
+
+
+def compared_frequencies(bench: Bench) -> np.ndarray:
+    """Return (line,) Hz: the frequencies of `holding_lines`."""
+    frequency = _frequencies(bench)
+    return frequency[_inside(bench, frequency)]
 
 
 def holds(bench: Bench, modes: int) -> np.ndarray:

@@ -146,7 +146,7 @@ def _fit(
         for _ in range(TRIES):
             step = _step(information, pull, damping, own)
             tried = [np.clip(x + share * step, low, high) for share in SHARES]
-            tried.append(np.clip(x + _step(*lowest, damping, own), low, high))
+            tried.append(np.clip(x + _step(lowest[0], lowest[1], damping, own), low, high))
             points = [to_point(each, rows, start) for each in tried]
             found = yield points
             values = [

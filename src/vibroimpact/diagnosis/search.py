@@ -29,6 +29,7 @@ from .coordinates import effect_coordinates
 from .explanations import Point, Term
 from .gauss_newton import Fit, columns, fits
 from .measurement.usable import Refused
+from .place_starts import place_terms
 from .plate_starts import plate_terms
 from .screening import Screened, Screening, ranked, screen
 
@@ -234,6 +235,7 @@ def _screened(at: _Benches, base: Point, before: Sequence[Screened]) -> Screenin
     own = at.comparison
     wanted = any(effect.id == PLATE for effect in others)
     demanded = plate_terms(own, at.screened, base) if wanted else []
+    demanded += place_terms(own, at.screened, base, others)
     return screen(at.screened, base, others, own.sizes, own.across, own.along, demanded, before)
 
 

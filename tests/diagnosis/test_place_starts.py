@@ -1,0 +1,38 @@
+"""The place of a missing force by the holding force alone."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.diagnosis.played import played
+from vibroimpact.diagnosis.explanations import Point, Term
+from vibroimpact.diagnosis.place_starts import demanded_places, place_terms
+from vibroimpact.effects.places import arc_length_m, between, turned_deg
+from vibroimpact.effects.registry import EFFECTS
+
+
+@pytest.mark.parametrize("place_m", [0.9, 1.4])
+def test_a_force_is_placed_without_a_run_of_it(comparison, place_m):
+    hidden = Term("one_sided_stop", between(place_m, 0.0), (5.0e-5, 2.0e5))
+    bench = played(comparison.screened(), Point((hidden,)))
+    (place, turned), *_ = demanded_places(comparison, bench, Point())
+    assert turned == 0.0
+    assert place == pytest.approx(place_m, abs=0.06 * comparison.sizes["tube_length"])
+
+
+def test_effects_are_tried_at_the_places_that_are_demanded(comparison):
+    hidden = Term("one_sided_stop", "arc_900_0mm_turned_0_0deg", (5.0e-5, 2.0e5))
+    bench = played(comparison.screened(), Point((hidden,)))
+    effects = [EFFECTS[name] for name in ("one_sided_stop", "clearance", "added_mass", "gap")]
+    found = place_terms(comparison, bench, Point(), effects)
+    stops = [term for term in found if term.effect_id == "one_sided_stop"]
+    assert {term.effect_id for term in found} == {"one_sided_stop", "clearance"}
+    assert {0.0, 180.0} <= {turned_deg(term.location) for term in stops}
+    assert len({arc_length_m(term.location) for term in stops}) == 2
+
+
+def test_two_sensors_place_nothing(comparison):
+    bench = comparison.screened()
+    still = [replace(each, motion=each.motion * (np.arange(6) < 2)) for each in bench.stretches]
+    assert demanded_places(comparison, replace(bench, stretches=tuple(still)), Point()) == []
