@@ -87,6 +87,12 @@ FAR: dict[str, Sequence[tuple[float, ...]]] = {
     "foliate_hexafoil": _turned("foliate_hexafoil", 0.6),
 }
 
+# The same at a place that is known: a soft obstacle gains from two thirds of its right distance on.
+AT_A_KNOWN_PLACE: dict[str, Sequence[tuple[float, ...]]] = FAR | {
+    law: [*((share, 1.0) for share in (0.2, 0.3, 0.45, 0.7, 1.0, 1.5)), (0.2, 100.0), (0.6, 100.0)]
+    for law in ("clearance", "one_sided_stop")
+}
+
 
 def locations(
     effect: Effect, values: Values, channels: Sequence[str], across: bool, places: int
@@ -145,10 +151,15 @@ def _turns(effect_id: str, across: bool) -> tuple[float | None, ...]:
     return (None, ACROSS_DEG) if across and effect_id != "added_mass" else (None,)
 
 
-def far_terms(effect: Effect, location: str, sizes: Mapping[str, float]) -> Iterator[Term]:
-    """Yield the terms of an effect at a place that are far from doing nothing."""
+def far_terms(
+    effect: Effect,
+    location: str,
+    sizes: Mapping[str, float],
+    far: Mapping[str, Sequence[tuple[float, ...]]] = FAR,
+) -> Iterator[Term]:
+    """Yield the terms of an effect at a place that are far from doing nothing; far: see FAR."""
     names = [parameter.name for parameter in effect.parameters]
-    for row in FAR.get(effect.id, ()):
+    for row in far.get(effect.id, ()):
         share = dict(zip(names, row, strict=True))
         yield Term(
             effect.id,

@@ -19,7 +19,7 @@ from vibroimpact.effects.effect import Effect
 from vibroimpact.effects.places import between, length_m
 
 from .bench import Bench, compared_frequencies, holding_lines, misfit, whitening
-from .catalogue import ACROSS_DEG, AT_A_POINT, far_terms
+from .catalogue import ACROSS_DEG, AT_A_KNOWN_PLACE, AT_A_POINT, far_terms
 from .comparison import Comparison
 from .explanations import Point, Term
 from .law import receptances
@@ -39,13 +39,14 @@ def place_terms(
     bench: of stretches that are held. Raises ConfigError or ValueError if the Point makes no model.
     """
     out: list[Term] = []
+    sizes = comparison.sizes
     for place, turned in demanded_places(comparison, bench, point):
         for effect in effects:
             if effect.id not in AT_A_POINT or effect.id == "added_mass":
                 continue  # a mass acts in all directions
             one_sided = effect.id == "one_sided_stop"
             for way in (turned, turned + 180.0) if one_sided else (turned or None,):
-                out += far_terms(effect, between(place, way), comparison.sizes)
+                out += far_terms(effect, between(place, way), sizes, AT_A_KNOWN_PLACE)
     return out
 
 
