@@ -15,6 +15,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from vibroimpact.config.problems import ConfigError
 from vibroimpact.effects.effect import Effect
 from vibroimpact.effects.places import between, length_m
 
@@ -69,7 +70,10 @@ def demanded_places(
     for turned in (0.0, ACROSS_DEG) if comparison.across else (0.0,):
         for place in length * (np.arange(PLACES) + 0.5) / PLACES:
             probe = Term(PROBE.effect_id, between(place, turned or None), PROBE.values)
-            own = structure.model(point.beside(probe))
+            try:
+                own = structure.model(point.beside(probe))
+            except (ConfigError, ValueError):
+                continue  # no law can act there
             found.append((misfit(bench, _left(bench, lines, held, own)), float(place), turned))
     kept: list[tuple[float, float]] = []
     for _, place, turned in sorted(found):
