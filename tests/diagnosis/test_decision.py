@@ -48,7 +48,9 @@ def test_a_second_effect_is_sought_with_other_firsts_too():
         hypothesis(0.7, "gap@left"),
         hypothesis(0.5, "hertz@all"),
     )
-    assert Search(singles[0], (pair, *singles)).other_firsts == [singles[1]]
+    found = Search(hypothesis(0.0), (pair, *singles))
+    assert found.other_firsts == [*singles[:2]]
+    assert replace(found, bases=("nothing", "gap@all")).other_firsts == [singles[1]]
     weak = (hypothesis(0.04, "gap@all"), hypothesis(0.03, "gap@left"))
     assert Search(weak[0], weak).other_firsts == []
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from vibroimpact.diagnosis.explanations import Point, Term
-from vibroimpact.diagnosis.free_runs import distance, free_runs, regions, surely_off
+from vibroimpact.diagnosis.free_runs import distance, distances, free_runs, regions, surely_off
 
 
 @pytest.fixture(scope="module")
@@ -24,6 +24,15 @@ def test_a_channel_ten_times_louder_is_ten_decibels_off(compared):
     rows = regions(runs, signals, 5)
     assert {row["channel"] for row in rows} == {signals.names[1]}
     assert np.median([row["discrepancy_dB"] for row in rows]) == pytest.approx(10.0, abs=3.0)
+
+
+def test_records_and_channels_are_as_far_off_each_on_its_own(compared):
+    signals, runs = compared
+    rows = distances(runs, signals)
+    away = np.array([row["before_dB"] or np.nan for row in rows]).reshape(len(signals.load), -1)
+    louder = np.arange(len(signals.names)) == 1
+    assert (away[:, louder] > 8.0).all()
+    assert (away[:, ~louder] < 5.0)[np.isfinite(away[:, ~louder])].all()
 
 
 def test_a_run_that_failed_spoils_no_other_record(compared):

@@ -25,7 +25,7 @@ from .comparison import Comparison
 from .explanations import Point, Term
 from .law import receptances
 
-PLACES, KEPT = 24, 2  # along the tube, and those whose effects are tried
+PLACES, KEPT = 24, 3  # along the tube, and those whose effects are tried
 APART = 0.08  # of the length of the tube, between two that are tried
 FEWEST_SENSORS = 3
 PROBE = Term("cubic_stiffness", "", (1.0e-6,))  # marks a place and does nothing

@@ -5,7 +5,7 @@ far from it by trial.
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -57,17 +57,23 @@ def screen(
 ) -> Screening:
     """Return the Screening of effects at all places in addition to the terms of a Point.
 
-    sizes, across, along: see Comparison. demanded: more terms to try. before: Screened in addition
-    to nothing, best first: of an effect with MANY values far from neutral, only the AGAIN at each
-    place that gained most are tried again.
+    sizes, across, along: see Comparison. demanded: terms to try; their effects are tried at their
+    places alone. before: Screened in addition to nothing, best first: of an effect with MANY values
+    far from neutral, only the AGAIN at each place that gained most are tried again.
     """
     structure = bench.structure
-    places = [
+    placed = {effect.id: set[str]() for effect in effects}
+    for term in demanded:
+        placed[term.effect_id].add(term.location)
+    anywhere = [
         (effect, location)
         for effect in effects
+        if not placed[effect.id]
         for location in locations(effect, structure.values, structure.names, across, along)
     ]
-    far = [term for each in places for term in far_terms(*each, sizes)]
+    known = [(effect, place) for effect in effects for place in sorted(placed[effect.id])]
+    places = [*anywhere, *known]
+    far = [term for each in anywhere for term in far_terms(*each, sizes)]
     terms = [*trials_again(far, before), *sensor_terms(bench, base), *demanded]
     wanted = {effect.id for effect in effects}
     trials = [base.beside(term) for term in terms if term.effect_id in wanted]
@@ -77,7 +83,7 @@ def screen(
     lines = holding_lines(bench, [base])[0]
     near = _near(bench, lines, neutral, sizes)
     tried = ranked(bench, lines, trials + [point for own in near for point in own[:TRIED]])
-    tried = _with_halfway(bench, lines, tried, along)
+    tried = _with_halfway(bench, lines, tried, along, {effect.id for effect, _ in known})
     ran = {_last(point) for own in near for point in own}
     ran |= {_last(each.point) for each in tried if np.isfinite(each.gain)}
     failed = {_last(point) for point in trials + neutral} - ran
@@ -147,13 +153,15 @@ def _add(gains, bench, lines, stretch, points, which):
 
 
 def _with_halfway(
-    bench: Bench, lines: np.ndarray, ranked: Sequence[Screened], along: int
+    bench: Bench, lines: np.ndarray, ranked: Sequence[Screened], along: int, placed: Set[str]
 ) -> list[Screened]:
     """Return Screened with the terms half way to the neighbours of the best one of each effect: a
     gain may be as narrow as a quarter of a wave, or a few degrees, and lie between two trials.
+
+    placed: ids of effects whose places are known.
     """
     tried: dict[tuple, Point] = {}
-    leading: set[str] = set()
+    leading = set(placed)
     for each in ranked:
         *before, last = each.point.terms
         if last.effect_id in leading or not np.isfinite(each.gain):
@@ -161,7 +169,7 @@ def _with_halfway(
         for term in halfway(last, bench.structure.values, along):
             tried[term.name, term.values] = replace(each.point, terms=(*before, term))
             leading.add(last.effect_id)
-        if len(leading) == BETWEEN:
+        if len(leading) == BETWEEN + len(placed):
             break
     points = list(tried.values())
     gains = _gains(bench, lines, points)

@@ -87,7 +87,7 @@ class Hypothesis:
         """Return the gain over another one, less the standard error of their difference apart: of
         two that fit as well, the errors are much alike.
         """
-        error = 0.0
+        error = 0.0 if other.point.terms else self.error
         if self.change is not None and other.change is not None and self.lines is not None:
             _, error = jackknife(self.change - other.change, self.lines)
         return min(self.apart - other.apart - error, self.gain - other.gain)
@@ -98,20 +98,24 @@ class Search:
     """The hypothesis that nothing is missing, and hypotheses of effects, best first.
 
     failed: effects without a value that could be run. screened: single effects in addition to
-    nothing, as screened, best first.
+    nothing, as screened, best first. bases: names of the points to which another effect was sought.
     """
 
     nothing: Hypothesis
     hypotheses: tuple[Hypothesis, ...]
     failed: tuple[str, ...] = ()
     screened: tuple[Screened, ...] = ()
+    bases: tuple[str, ...] = ()
 
     @property
     def other_firsts(self) -> list[Hypothesis]:
-        """Return the single effects that gain nearly as much as the best one, best first."""
+        """Return the single effects that gain nearly as much as the best one and have got no second
+        one yet, best first.
+        """
         singles = [each for each in self.hypotheses if len(each.point.terms) == 1]
-        least = CONTENDS * singles[0].gain if singles else 0.0
-        return [each for each in singles[1:] if each.worth > max(least, needed_gain(0.0))]
+        least = max(CONTENDS * singles[0].gain if singles else 0.0, needed_gain(0.0))
+        new = (each for each in singles if each.point.name not in self.bases)
+        return [each for each in new if each.worth > least]
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,8 +176,9 @@ def _forward(
     """Return a Search with the hypotheses of up to `most` effects in addition to a base."""
     nothing, screened = before.nothing, before.screened
     found = {each.point.name: each for each in before.hypotheses}
-    failed = set(before.failed)
+    failed, bases = set(before.failed), list(before.bases)
     for _ in range(most):
+        bases.append(base.point.name)
         screening = _screened(at, base.point, screened)
         screened = screened or screening.ranked
         failed |= {*screening.failed}
@@ -196,7 +201,7 @@ def _forward(
             best = max([best, *others], key=_rated)
         base = best
     hypotheses = sorted(found.values(), key=lambda each: -each.gain)
-    return Search(nothing, tuple(hypotheses), tuple(sorted(failed)), screened)
+    return Search(nothing, tuple(hypotheses), tuple(sorted(failed)), screened, tuple(bases))
 
 
 def _nothing(at: _Benches) -> Hypothesis:
