@@ -13,12 +13,13 @@ from vibroimpact.effects.places import arc_length_m, between, turned_deg
 from vibroimpact.effects.registry import EFFECTS
 
 
-@pytest.mark.parametrize("place_m", [0.9, 1.4])
-def test_a_force_is_placed_without_a_run_of_it(comparison, place_m):
-    hidden = Term("one_sided_stop", between(place_m, 0.0), (5.0e-5, 2.0e5))
+@pytest.mark.parametrize(("place_m", "way_deg"), [(0.9, 0.0), (1.4, 0.0), (0.9, 40.0)])
+def test_a_force_is_placed_without_a_run_of_it(comparison, place_m, way_deg):
+    """One that acts at an angle moves the tube across the shaker's force too."""
+    hidden = Term("one_sided_stop", between(place_m, way_deg), (5.0e-5, 2.0e5))
     bench = played(comparison.screened(), Point((hidden,)))
     (place, turned), *_ = demanded_places(comparison, bench, Point())
-    assert turned == 0.0
+    assert turned == pytest.approx(way_deg, abs=15.0)
     assert place == pytest.approx(place_m, abs=0.06 * comparison.sizes["tube_length"])
 
 

@@ -215,10 +215,11 @@ def refuted(decision: Decision, in_favour_of_nothing: bool = False) -> Decision:
 
 
 def sure_gain(hypothesis: Hypothesis) -> float:
-    """Return the least gain of a hypothesis, by two standard errors: a gain in a few bands is as
-    sure as one in many.
+    """Return the least gain of a hypothesis: by two standard errors, or by what a wrong effect
+    reaches, if that is less.
     """
-    return min(hypothesis.apart - 2.0 * hypothesis.error, hypothesis.gain)
+    error = min(2.0 * hypothesis.error, constants.NULL_REACH)
+    return min(hypothesis.apart - error, hypothesis.gain)
 
 
 def _superfluous(hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:

@@ -27,8 +27,8 @@ from .law import receptances
 
 PLACES, KEPT = 24, 3  # along the tube, and those whose effects are tried
 APART = 0.08  # of the length of the tube, between two that are tried
+DIRECTIONS_DEG = tuple(range(0, 180, 15))  # from the force, about the tube
 FEWEST_SENSORS = 3
-PROBE = Term("cubic_stiffness", "", (1.0e-6,))  # marks a place and does nothing
 
 
 def place_terms(
@@ -67,21 +67,30 @@ def demanded_places(
         return []
     held = _held(bench, structure.model(point), structure.measuring(point).gain)
     found = []
-    for turned in (0.0, ACROSS_DEG) if comparison.across else (0.0,):
-        for place in length * (np.arange(PLACES) + 0.5) / PLACES:
-            probe = Term(PROBE.effect_id, between(place, turned or None), PROBE.values)
-            try:
-                own = structure.model(point.beside(probe))
-            except (ConfigError, ValueError):
-                continue  # no law can act there
-            found.append((misfit(bench, _left(bench, lines, held, own)), float(place), turned))
+    for place in length * (np.arange(PLACES) + 0.5) / PLACES:
+        try:
+            column = [
+                _column(bench, held, structure.model(point.beside(_probe(place, turned))))
+                for turned in ((0.0, ACROSS_DEG) if comparison.across else (0.0,))
+            ]
+        except (ConfigError, ValueError):
+            continue  # no law can act there
+        for turned in DIRECTIONS_DEG if comparison.across else (0.0,):
+            share = np.cos(np.deg2rad(turned)), np.sin(np.deg2rad(turned))
+            own = sum(part * each for part, each in zip(share, column, strict=False))
+            found.append((misfit(bench, _left(bench, lines, own)), float(place), turned))
     kept: list[tuple[float, float]] = []
     for _, place, turned in sorted(found):
-        if all(abs(place - known) > APART * length or turned != way for known, way in kept):
+        if all(abs(place - known) > APART * length for known, _ in kept):
             kept.append((place, turned))
         if len(kept) == KEPT:
             break
     return kept
+
+
+def _probe(place: float, turned: float) -> Term:
+    """Return a Term that marks a place and a direction, and does nothing."""
+    return Term("cubic_stiffness", between(place, turned or None), (1.0e-6,))
 
 
 def _held(bench, model, gain):
@@ -103,11 +112,15 @@ def _shapes(bench, model):
     return model.sensor_shapes * (model.frequencies < bench.held_below_Hz)[:, None]
 
 
-def _left(bench, lines, held, model):
-    """Return (stretch, channel, line): lines without the most likely force at the last element."""
+def _column(bench, held, model):
+    """Return (channel, line): the holding force per force at the last element of a model."""
     frequency = compared_frequencies(bench)
     moved = (receptances(model, frequency) * model.element_shapes[:, -1]) @ _shapes(bench, model)
-    column = np.einsum("lst,lt->sl", held, moved)  # a factor by line, as of velocity, is in f
+    return np.einsum("lst,lt->sl", held, moved)  # a factor by line, as of velocity, is in the force
+
+
+def _left(bench, lines, column):
+    """Return (stretch, channel, line): lines without the most likely force, given its column."""
     weight = whitening(bench, lines)
     white = weight * column
     size = np.sum(np.abs(white) ** 2, axis=1, keepdims=True)

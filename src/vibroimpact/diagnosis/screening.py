@@ -12,11 +12,12 @@ import numpy as np
 
 from vibroimpact.effects.effect import Effect
 
-from .bench import Bench, holding_lines, misfit, whitening
+from .bench import Bench, holding_lines
 from .catalogue import far_terms, halfway, locations, neutral_term, parts
-from .constants import INDEPENDENT
+from .comparison import Comparison
 from .coordinates import Coordinate, bounds, effect_coordinates, to_point, to_vector
 from .explanations import Point, Term
+from .nuisances import Nuisances
 from .sensor_starts import sensor_terms
 
 AT_A_TIME = 256  # points whose lines are held in memory
@@ -46,44 +47,42 @@ class Screening:
 
 
 def screen(
-    bench: Bench,
-    base: Point,
+    at: Nuisances,
     effects: Sequence[Effect],
-    sizes: Mapping[str, float],
-    across: bool,
-    along: int,
+    comparison: Comparison,
     demanded: Sequence[Term] = (),
     before: Sequence[Screened] = (),
 ) -> Screening:
-    """Return the Screening of effects at all places in addition to the terms of a Point.
+    """Return the Screening of effects at all places in addition to the terms of a base.
 
-    sizes, across, along: see Comparison. demanded: terms to try; their effects are tried at their
-    places alone. before: Screened in addition to nothing, best first: of an effect with MANY values
-    far from neutral, only the AGAIN at each place that gained most are tried again.
+    at: the base, and the nuisances about it. demanded: terms to try; their effects are tried at
+    their places alone. before: Screened in addition to nothing, best first: of an effect with MANY
+    values far from neutral, only the AGAIN at each place that gained most are tried again.
     """
-    structure = bench.structure
+    structure, base, sizes = at.bench.structure, at.base, comparison.sizes
     placed = {effect.id: set[str]() for effect in effects}
     for term in demanded:
         placed[term.effect_id].add(term.location)
+    tried_at = structure.values, structure.names, comparison.across, comparison.along
     anywhere = [
         (effect, location)
         for effect in effects
         if not placed[effect.id]
-        for location in locations(effect, structure.values, structure.names, across, along)
+        for location in locations(effect, *tried_at)
     ]
     known = [(effect, place) for effect in effects for place in sorted(placed[effect.id])]
-    places = [*anywhere, *known]
     far = [term for each in anywhere for term in far_terms(*each, sizes)]
-    terms = [*trials_again(far, before), *sensor_terms(bench, base), *demanded]
+    terms = [*trials_again(far, before), *sensor_terms(at.bench, base), *demanded]
     wanted = {effect.id for effect in effects}
     trials = [base.beside(term) for term in terms if term.effect_id in wanted]
     neutral = [
-        base.beside(term) for each in places if (term := neutral_term(*each, sizes)) is not None
+        base.beside(least)
+        for each in (*anywhere, *known)
+        if (least := neutral_term(*each, sizes)) is not None
     ]
-    lines = holding_lines(bench, [base])[0]
-    near = _near(bench, lines, neutral, sizes)
-    tried = ranked(bench, lines, trials + [point for own in near for point in own[:TRIED]])
-    tried = _with_halfway(bench, lines, tried, along, {effect.id for effect, _ in known})
+    near = _near(at, neutral, sizes)
+    tried = ranked(at, trials + [point for own in near for point in own[:TRIED]])
+    tried = _with_halfway(at, tried, comparison.along, {effect.id for effect, _ in known})
     ran = {_last(point) for own in near for point in own}
     ran |= {_last(each.point) for each in tried if np.isfinite(each.gain)}
     failed = {_last(point) for point in trials + neutral} - ran
@@ -103,15 +102,12 @@ def trials_again(far: Sequence[Term], before: Sequence[Screened]) -> list[Term]:
     return [term for own in kept.values() for term in own] or list(far)
 
 
-def _near(
-    bench: Bench, lines: np.ndarray, neutral: Sequence[Point], sizes: Mapping[str, float]
-) -> list[list[Point]]:
+def _near(at: Nuisances, neutral: Sequence[Point], sizes: Mapping[str, float]) -> list[list[Point]]:
     """Return the Points that derivatives predict on each stretch, best first."""
     out = []
-    for number in range(len(bench.stretches)):
-        own = slice(number, number + 1)
-        points = [point for point in neutral if _first(bench, point) == number]
-        found = predicted(bench.on(own), lines[own], points, sizes)
+    for number in range(len(at.bench.stretches)):
+        points = [point for point in neutral if _first(at.bench, point) == number]
+        found = predicted(at.on(slice(number, number + 1)), points, sizes)
         out.append([point for point, _ in found])
     return out
 
@@ -121,22 +117,21 @@ def _last(point: Point) -> str:
     return point.terms[-1].effect_id
 
 
-def ranked(bench: Bench, lines: np.ndarray, points: Sequence[Point]) -> list[Screened]:
+def ranked(at: Nuisances, points: Sequence[Point]) -> list[Screened]:
     """Return Screened of points, best first: all are tried on the stretch that shows them best, see
-    `_first`, and those that gain most there on the others. lines (stretch, channel, line): of the
-    base.
+    `_first`, and those that gain most there on the others.
     """
     gains = np.zeros(len(points))
-    stretches = np.arange(len(bench.stretches))
-    first = np.array([_first(bench, point) for point in points], int)
-    for own in stretches:
-        _add(gains, bench, lines, own, points, np.flatnonzero(first == own))
+    stretches = [at.on(slice(own, own + 1)) for own in range(len(at.bench.stretches))]
+    first = np.array([_first(at.bench, point) for point in points], int)
+    for number, own in enumerate(stretches):
+        _add(gains, own, points, np.flatnonzero(first == number))
     order = np.argsort(-gains, kind="stable")
     kept, left = np.split(order, [max(round(KEPT * len(order)), FEWEST_KEPT)])
-    for own in stretches:
-        _add(gains, bench, lines, own, points, kept[first[kept] != own])
+    for number, own in enumerate(stretches):
+        _add(gains, own, points, kept[first[kept] != number])
     kept = kept[np.argsort(-gains[kept], kind="stable")]
-    return [Screened(points[at], float(gains[at])) for at in (*kept, *left)]
+    return [Screened(points[each], float(gains[each])) for each in (*kept, *left)]
 
 
 def _first(bench: Bench, point: Point) -> int:
@@ -146,14 +141,13 @@ def _first(bench: Bench, point: Point) -> int:
     return 0 if point.terms[-1].effect.linear else len(bench.stretches) - 1
 
 
-def _add(gains, bench, lines, stretch, points, which):
+def _add(gains, at, points, which):
     """Add the gains of points number `which` on a stretch to gains (point,)."""
-    own = slice(stretch, stretch + 1)
-    gains[which] += _gains(bench.on(own), lines[own], [points[at] for at in which])
+    gains[which] += gains_of(at, [points[each] for each in which])
 
 
 def _with_halfway(
-    bench: Bench, lines: np.ndarray, ranked: Sequence[Screened], along: int, placed: Set[str]
+    at: Nuisances, ranked: Sequence[Screened], along: int, placed: Set[str]
 ) -> list[Screened]:
     """Return Screened with the terms half way to the neighbours of the best one of each effect: a
     gain may be as narrow as a quarter of a wave, or a few degrees, and lie between two trials.
@@ -166,55 +160,58 @@ def _with_halfway(
         *before, last = each.point.terms
         if last.effect_id in leading or not np.isfinite(each.gain):
             continue
-        for term in halfway(last, bench.structure.values, along):
+        for term in halfway(last, at.bench.structure.values, along):
             tried[term.name, term.values] = replace(each.point, terms=(*before, term))
             leading.add(last.effect_id)
         if len(leading) == BETWEEN + len(placed):
             break
     points = list(tried.values())
-    gains = _gains(bench, lines, points)
+    gains = gains_of(at, points)
     found = [Screened(*pair) for pair in zip(points, map(float, gains), strict=True)]
     return sorted([*ranked, *found], key=lambda each: -each.gain)
 
 
-def _gains(bench: Bench, lines: np.ndarray, points: Sequence[Point]) -> np.ndarray:
-    """Return (point,): the misfit of lines less the misfit of each point."""
-    now, out = misfit(bench, lines), []
+def gains_of(at: Nuisances, points: Sequence[Point]) -> np.ndarray:
+    """Return (point,): how much lower the objective of each point is than that of the base."""
+    out: list[float] = []
     for first in range(0, len(points), AT_A_TIME):
-        found = holding_lines(bench, points[first : first + AT_A_TIME])
-        out += [now - misfit(bench, own) for own in found]
+        own = points[first : first + AT_A_TIME]
+        found = holding_lines(at.bench, own)
+        out += [at.now - at.objective(*pair) for pair in zip(found, own, strict=True)]
     return np.array(out)
 
 
 def predicted(
-    bench: Bench, lines: np.ndarray, neutral: Sequence[Point], sizes: Mapping[str, float]
+    at: Nuisances, neutral: Sequence[Point], sizes: Mapping[str, float]
 ) -> list[tuple[Point, float]]:
-    """Return [(Point, predicted gain)] of the best step of the last term of each Point, best first.
+    """Return [(Point, predicted gain)] of the best step of the last term of each Point, and of the
+    nuisances beside it, best first.
 
-    lines (stretch, channel, line): of the base. neutral: Points whose last term does nothing.
+    neutral: Points whose last term does nothing.
     """
-    values, weight = bench.structure.values, whitening(bench, lines)
+    values = at.bench.structure.values
     rows_of = {point.name: _last_rows(point, sizes) for point in neutral}
     single = [
         point for point in neutral if parts(point.terms[-1], values) == [point.terms[-1].location]
     ]
-    derivative = _derivatives(bench, lines * weight, weight, single, rows_of)
-    out, now = [], misfit(bench, lines)
+    derivative = _derivatives(at, single, rows_of)
+    out = []
     for point in neutral:
         term, rows = point.terms[-1], rows_of[point.name]
         own = [(term.effect_id, part) for part in parts(term, values)]
         if not all(key in derivative for key in own):
             continue
-        white = sum(derivative[key] for key in own)
-        if not np.isfinite(white).any():  # no step of any parameter could be run
+        total = sum(derivative[key] for key in own)
+        if not np.isfinite(total).any():  # no step of any parameter could be run
             continue
-        white = np.nan_to_num(white)
-        x = to_vector(point, rows)
-        step = _best_step(white.reshape(len(rows), -1), (lines * weight).ravel())
-        moved = np.clip(x + step, *bounds(rows))
-        change = np.tensordot(moved - x, white, 1)
-        left = lines + np.divide(change, weight, out=np.zeros_like(change), where=weight > 0.0)
-        out.append((to_point(moved, rows, point), now - misfit(bench, left)))
+        total, both = np.nan_to_num(total), [*rows, *at.rows]
+        x = to_vector(point, both)
+        moved = to_point(
+            np.clip(x + at.best_step(total, FARTHEST_STEP), *bounds(both)), both, point
+        )
+        change = np.concatenate([total, at.columns])
+        left = at.lines + np.tensordot(to_vector(moved, both) - x, change, 1)
+        out.append((moved, at.now - at.objective(left, moved)))
     return sorted(out, key=lambda pair: -pair[1])
 
 
@@ -225,10 +222,8 @@ def _last_rows(point: Point, sizes: Mapping[str, float]) -> list[Coordinate]:
     return [row for row in rows if row.index == last and row.kind == "term"]
 
 
-def _derivatives(bench, white, weight, points, rows_of):
-    """Return {(effect, location): (parameter, stretch, channel, line)} of whitened lines
-    `white`.
-    """
+def _derivatives(at, points, rows_of):
+    """Return {(effect, location): (parameter, stretch, channel, line)} of the lines of the base."""
     moved, owners = [], []
     for point in points:
         rows = rows_of[point.name]
@@ -240,17 +235,8 @@ def _derivatives(bench, white, weight, points, rows_of):
             owners.append((point.terms[-1], row.step))
     out: dict[tuple[str, str], list[np.ndarray]] = {}
     for first in range(0, len(moved), AT_A_TIME):
-        found = holding_lines(bench, moved[first : first + AT_A_TIME])
+        found = holding_lines(at.bench, moved[first : first + AT_A_TIME])
         for own, (term, step) in zip(found, owners[first : first + AT_A_TIME], strict=True):
-            column = (own * weight - white) / step
+            column = (own - at.lines) / step
             out.setdefault((term.effect_id, term.location), []).append(column)
     return {key: np.stack(found) for key, found in out.items()}
-
-
-def _best_step(white, residual):
-    """Return (coordinate,) the least-squares step, no longer than FARTHEST_STEP."""
-    normal = 2.0 * INDEPENDENT * (white.conj() @ white.T).real.astype(float)
-    pull = 2.0 * INDEPENDENT * (white.conj() @ residual).real.astype(float)
-    held = np.eye(len(normal)) / FARTHEST_STEP**2
-    step = -np.linalg.lstsq(normal + held, pull, rcond=None)[0]
-    return step / max(1.0, np.abs(step).max(initial=0.0) / FARTHEST_STEP)

@@ -20,18 +20,18 @@ from .bench import (
     effective_lines,
     holding_lines,
     log_power,
-    misfit,
 )
 from .catalogue import within_priors
 from .comparison import Comparison
-from .constants import needed_gain
+from .constants import NULL_REACH, needed_gain
 from .coordinates import effect_coordinates
 from .explanations import Point, Term
-from .gauss_newton import Fit, columns, fits
+from .gauss_newton import Fit, fits
 from .measurement.usable import Refused
+from .nuisances import Nuisances, nuisances_at
 from .place_starts import place_terms
 from .plate_starts import plate_terms
-from .screening import Screened, Screening, ranked, screen
+from .screening import Screened, Screening, gains_of, ranked, screen
 
 RACED, EXCHANGED, FINALISTS = 12, 4, 4
 RIVALS_AGAIN = 40  # of the first effect, tried again when a second one is known
@@ -87,7 +87,7 @@ class Hypothesis:
         """Return the gain over another one, less the standard error of their difference apart: of
         two that fit as well, the errors are much alike.
         """
-        error = 0.0 if other.point.terms else self.error
+        error = 0.0 if other.point.terms else min(self.error, NULL_REACH)
         if self.change is not None and other.change is not None and self.lines is not None:
             _, error = jackknife(self.change - other.change, self.lines)
         return min(self.apart - other.apart - error, self.gain - other.gain)
@@ -179,14 +179,14 @@ def _forward(
     failed, bases = set(before.failed), list(before.bases)
     for _ in range(most):
         bases.append(base.point.name)
-        screening = _screened(at, base.point, screened)
+        about = nuisances_at(at.screened, base.point, at.comparison.nuisances())
+        screening = _screened(at, about, screened)
         screened = screened or screening.ranked
         failed |= {*screening.failed}
-        raced = _race(at, screening.ranked, base.point)
+        raced = _race(at, about, screening.ranked)
         if not _promises(at, raced, base):
             break
-        starts = _fitted_from(at, raced[:FINALISTS], screening.ranked)
-        new = _kept(at, _finals(at, starts, nothing), nothing)
+        new = _kept(at, _finals_of(at, raced[:FINALISTS], screening.ranked, nothing), nothing)
         found |= {each.point.name: each for each in new}
         if not new:
             break
@@ -229,41 +229,40 @@ def _promises(at: _Benches, raced: Sequence[Screened], base: Hypothesis) -> bool
     return gain > PROMISING * needed_gain(base.worth)
 
 
-def _screened(at: _Benches, base: Point, before: Sequence[Screened]) -> Screening:
-    """Return the Screening of the effects that a Point lacks, in addition to its own. None is added
+def _screened(at: _Benches, about: Nuisances, before: Sequence[Screened]) -> Screening:
+    """Return the Screening of the effects that a base lacks, in addition to its own. None is added
     twice: two of one kind at neighbouring places are one at a place not tried.
 
-    before: effects screened in addition to nothing; empty in the first screening.
+    about: the base. before: effects screened in addition to nothing; empty in the first screening.
     """
-    known = {term.effect_id for term in base.terms}
+    base, known = about.base, {term.effect_id for term in about.base.terms}
     others = [effect for effect in at.effects if effect.id not in known]
     own = at.comparison
     wanted = any(effect.id == PLATE for effect in others)
     demanded = plate_terms(own, at.screened, base) if wanted else []
     demanded += place_terms(own, at.screened, base, others)
-    return screen(at.screened, base, others, own.sizes, own.across, own.along, demanded, before)
+    return screen(about, others, own, demanded, before)
 
 
 def _race(
-    at: _Benches, screened: Sequence[Screened], beside: Point, most: int = RACED
+    at: _Benches, about: Nuisances, screened: Sequence[Screened], most: int = RACED
 ) -> list[Screened]:
     """Return the best screened points after some passes of Gauss-Newton, best first, one of each
     effect and place. Stronger dampers widen the basin in which these find the right place.
 
-    beside: Point without their last term. most: number of effects in the race.
+    about: the base, which lacks their last term. most: number of effects in the race.
     """
     starts = _starts(at, screened, most)
     strong = replace(at.screened, strength=STRONGER * at.screened.strength)
     sizes = at.comparison.sizes
-    rows = [effect_coordinates(own.terms, sizes) for own in starts]
-    ends = fits(strong, list(zip(starts, rows, strict=True)), RACE_PASSES)
+    rows = [[*effect_coordinates(own.terms, sizes), *about.rows] for own in starts]
+    known = nuisances_at(strong, about.base, about.rows).columns
+    ends = fits(strong, list(zip(starts, rows, strict=True)), RACE_PASSES, known)
     points = [*starts, *(own.point for own in ends)]
-    base, *found = holding_lines(at.screened, [beside, *points])
-    now = misfit(at.screened, base)
     raced = [
-        Screened(point, now - misfit(at.screened, own))
-        for point, own in zip(points, found, strict=True)
-        if not within_priors(point.terms[-1], at.comparison.signals.rate, sizes)
+        Screened(*pair)
+        for pair in zip(points, map(float, gains_of(about, points)), strict=True)
+        if not within_priors(pair[0].terms[-1], at.comparison.signals.rate, sizes)
     ]
     raced.sort(key=lambda each: -each.gain)
     kept: dict[tuple, Screened] = {}
@@ -300,12 +299,15 @@ def _starts(at: _Benches, screened: Sequence[Screened], most: int) -> list[Point
     return [*firsts.values()][:most] + [*seconds.values()][:SECONDS]
 
 
-def _fitted_from(
-    at: _Benches, raced: Sequence[Screened], screened: Sequence[Screened]
-) -> list[Point]:
-    """Return the Point that each fit begins from: the raced one, or another value that gained
-    nearly as much in screening, whichever is best on the stretches that are fitted. The lowest load
-    is among these, and shows a linear structure best.
+def _finals_of(
+    at: _Benches,
+    raced: Sequence[Screened],
+    screened: Sequence[Screened],
+    nothing: Hypothesis,
+) -> list[Hypothesis]:
+    """Return the Hypotheses of raced points. Each fit begins from the raced point or from another
+    value that gained nearly as much in screening, whichever is best on the stretches that are
+    fitted: the lowest load is among these, and shows a linear structure best.
     """
     length, chosen = at.comparison.sizes["tube_length"], []
     for each in raced:
@@ -313,9 +315,13 @@ def _fitted_from(
         others = (own for own in screened if own.gain >= least)
         alike = [own.point for own in others if _where(own.point.terms[-1], length) == where]
         chosen.append([each.point, *alike[:VALUES]])
-    lines = iter(holding_lines(at.fitted, [point for own in chosen for point in own]))
-    values = [[misfit(at.fitted, next(lines)) for _ in own] for own in chosen]
-    return [own[int(np.argmin(value))] for own, value in zip(chosen, values, strict=True)]
+    about = _nuisances(at, [each.point for each in raced])
+    if about is None:
+        return []
+    gains = iter(gains_of(about, [point for own in chosen for point in own]))
+    best = [int(np.argmax([next(gains) for _ in own])) for own in chosen]
+    starts = [own[number] for own, number in zip(chosen, best, strict=True)]
+    return _finals(at, starts, nothing, about=about)
 
 
 def _where(term: Term, length: float) -> tuple:
@@ -329,15 +335,16 @@ def _finals(
     points: Sequence[Point],
     nothing: Hypothesis | None = None,
     polished: bool = True,
+    about: Nuisances | None = None,
 ) -> list[Hypothesis]:
     """Return the Hypotheses of points, fitted with all nuisances.
 
-    The columns of the nuisances are taken at the first point that runs; polished: the best fit, and
-    fits that gain nearly as much, take new columns at their ends, as long as that helps.
+    about: the point where their columns are taken, the first one that runs if None. polished: the
+    best fit, and fits that gain nearly as much, take new columns at their ends, as long as that
+    helps.
     """
-    columns_at = ((number, _nuisance_columns(at, point)) for number, point in enumerate(points))
-    first, known = next((own for own in columns_at if own[1] is not None), (len(points), None))
-    found = _fitted(at, points[first:], known)
+    about = about or _nuisances(at, points)
+    found = [] if about is None else _fitted(at, points, about.columns)
     if found and polished:
         best = min(each.objective for each in found)
         spare = 0.0 if nothing is None else max(nothing.fit.objective - best, 0.0)
@@ -348,15 +355,16 @@ def _finals(
     return _hypotheses(at, found, nothing)
 
 
-def _nuisance_columns(at: _Benches, point: Point) -> np.ndarray | None:
-    """Return the columns of the nuisances at a Point, None if it can not be run."""
-    lines = holding_lines(at.fitted, [point])[0]
-    if not np.isfinite(lines).all():
-        return None
-    return columns(at.fitted, point, at.comparison.nuisances(), lines)
+def _nuisances(at: _Benches, points: Sequence[Point]) -> Nuisances | None:
+    """Return the Nuisances about the first of points that can be run, None if none can."""
+    for point in points:
+        about = nuisances_at(at.fitted, point, at.comparison.nuisances())
+        if np.isfinite(about.lines).all():
+            return about
+    return None
 
 
-def _fitted(at: _Benches, points: Sequence[Point], known: np.ndarray | None) -> list[Fit]:
+def _fitted(at: _Benches, points: Sequence[Point], known: np.ndarray) -> list[Fit]:
     """Return the Fits of the effects of points and of the nuisances, whose columns are known."""
     names, sizes = at.comparison.structure.names, at.comparison.sizes
     starts = [point.with_own_gains(names) for point in points]
@@ -367,8 +375,8 @@ def _fitted(at: _Benches, points: Sequence[Point], known: np.ndarray | None) -> 
 def _polished(at: _Benches, found: Fit) -> Fit:
     """Return a Fit from which new columns of the nuisances lead no further."""
     for _ in range(POLISHED):
-        known = _nuisance_columns(at, found.point)
-        again = found if known is None else _fitted(at, [found.point], known)[0]
+        about = _nuisances(at, [found.point])
+        again = found if about is None else _fitted(at, [found.point], about.columns)[0]
         settled = found.objective - again.objective < POLISHED_GAIN * effective_lines(
             at.fitted, again.lines
         )
@@ -435,9 +443,8 @@ def _without_first(
             for term in terms
             if term.effect_id not in known and term.name != dropped.name
         ]
-        lines = holding_lines(at.screened, [base])[0]
-        again = ranked(at.screened, lines, rivals[:RIVALS_AGAIN])
-        raced = _race(at, again, base, EXCHANGED)[:2]
+        about = nuisances_at(at.screened, base, at.comparison.nuisances())
+        raced = _race(at, about, ranked(about, rivals[:RIVALS_AGAIN]), EXCHANGED)[:2]
         points = [each.point for each in raced]
         out += _kept(at, _finals(at, points, nothing, polished=False), nothing)
     for each in out:
