@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from evidence.benchmarks.table import SECONDS, three_digits
-from vibroimpact.reports.figures.style import BLUE, GREEN, GREY, ORANGE, SKY
+from vibroimpact.reports.figures.style import BLUE, GREEN, GREY, ORANGE, SKY, tidy_log_axes
 
 COLOURS = (ORANGE, BLUE, GREEN, SKY)
 BAR = 0.8  # height of the bars of one peer together
@@ -85,6 +85,7 @@ def draw(rows, path):
         "CPU time of the peer / CPU time of ours, per simulated second and run (-)\n"
         "Bars: median of the pairs; whiskers: smallest and largest"
     )
+    tidy_log_axes(figure)
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
     figure.savefig(path, dpi=130)
     plt.close(figure)
