@@ -71,6 +71,11 @@ def test_no_gain_is_nothing_missing():
     assert found.verdict == "none" and found.nothing > 0.95
 
 
+def test_a_gain_beyond_all_nulls_is_sure_though_bands_differ():
+    uneven = {gain: replace(hypothesis(gain, "gap@all"), error=0.25) for gain in (0.16, 0.32)}
+    assert [decided(each).verdict for each in uneven.values()] == ["none", "named"]
+
+
 @pytest.mark.parametrize(("before", "verdict"), [(1.2, "none"), (4.6, "unknown"), (None, "none")])
 def test_nothing_is_not_said_beside_spectra_that_are_far_off(before, verdict):
     found = beside_spectra(decided(), misfit(before, before))

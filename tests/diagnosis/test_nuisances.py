@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from tests.diagnosis.played import played
+from vibroimpact.diagnosis.bench import misfit
+from vibroimpact.diagnosis.coordinates import to_vector
 from vibroimpact.diagnosis.explanations import Point, Term
 from vibroimpact.diagnosis.gauss_newton import fit
 from vibroimpact.diagnosis.nuisances import nuisances_at
@@ -36,7 +38,10 @@ def test_a_gap_is_found_beside_gains_that_stand_for_it(larger_gap, comparison):
 
 
 def test_no_step_of_nuisances_makes_a_point_worse(larger_gap):
-    lines, base = larger_gap.lines, larger_gap.base
-    x = np.array([*base.frequency, *base.damping])
-    assert larger_gap.now <= larger_gap.objective(lines, base) and x.size
-    assert larger_gap.objective(np.nan * lines, base) == np.inf
+    lines, bench = larger_gap.lines, larger_gap.bench
+    x = to_vector(larger_gap.base, larger_gap.rows)
+    assert larger_gap.now <= misfit(bench, lines) + 0.5 * float(x @ x)
+    moved = lines + 2.0 * larger_gap.columns[0]
+    stayed = misfit(bench, moved) + 0.5 * float(x @ x)
+    assert larger_gap.objective(moved, larger_gap.base) < stayed - 1.0
+    assert larger_gap.objective(np.nan * lines, larger_gap.base) == np.inf

@@ -169,9 +169,15 @@ def _normal(white, residual, x, sd):
     (coordinate, stretch, channel, line), a residual and the priors.
     """
     rows = white.reshape(len(white), -1)
-    information = 2.0 * INDEPENDENT * (rows.conj() @ rows.T).real.astype(float)
-    pull = 2.0 * INDEPENDENT * (rows.conj() @ residual.ravel()).real
+    information, pull = products(rows, rows), products(rows, residual.ravel())
     return information + np.diag(1.0 / sd**2), pull + x / sd**2
+
+
+def products(left: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Return (row, row) of whitened rows (row, line) and right ones, or (row,) of rows and a
+    residual (line,): their products in the information and its pull, see the module.
+    """
+    return 2.0 * INDEPENDENT * (left.conj() @ right.T).real.astype(float)
 
 
 def _step(information, pull, damping, own):

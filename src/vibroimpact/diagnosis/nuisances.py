@@ -14,10 +14,9 @@ from functools import cached_property
 import numpy as np
 
 from .bench import Bench, holding_lines, misfit, whitening
-from .constants import INDEPENDENT
 from .coordinates import Coordinate, bounds, to_vector
 from .explanations import Point
-from .gauss_newton import columns
+from .gauss_newton import columns, products
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +50,7 @@ class Nuisances:
         if not np.isfinite(lines).all():
             return np.inf
         x = to_vector(point, self.rows)
-        pull = _pull(self._white, (lines * self.weight).ravel())
+        pull = products(self._white, (lines * self._weight).ravel())
         step = -np.linalg.solve(self._normal + np.eye(len(x)), pull + x)
         return min(self._value(lines, x, 0.0 * x), self._value(lines, x, step))
 
@@ -62,28 +61,28 @@ class Nuisances:
         derivative (coordinate, stretch, channel, line): of the lines of the base.
         """
         count, x = len(derivative), to_vector(self.base, self.rows)
-        own = (derivative * self.weight).reshape(count, -1)
-        cross = _normal(own, self._white)
-        normal = np.block([[_normal(own, own), cross], [cross.T, self._normal]])
+        own = (derivative * self._weight).reshape(count, -1)
+        cross = products(own, self._white)
+        normal = np.block([[products(own, own), cross], [cross.T, self._normal]])
         held = np.r_[np.full(count, farthest**-2.0), np.ones(len(x))]
-        pull = _pull(np.concatenate([own, self._white]), (self.lines * self.weight).ravel())
+        pull = products(np.concatenate([own, self._white]), (self.lines * self._weight).ravel())
         step = -np.linalg.solve(normal + np.diag(held), pull + np.r_[np.zeros(count), x])
         return step / max(1.0, np.abs(step[:count]).max(initial=0.0) / farthest)
 
     @cached_property
-    def weight(self) -> np.ndarray:
+    def _weight(self) -> np.ndarray:
         """Return (stretch, channel, line): see bench.whitening."""
         return whitening(self.bench, self.lines)
 
     @cached_property
     def _white(self) -> np.ndarray:
         """Return (nuisance, all lines): whitened columns."""
-        return (self.columns * self.weight).reshape(len(self.rows), -1)
+        return (self.columns * self._weight).reshape(len(self.rows), -1)
 
     @cached_property
     def _normal(self) -> np.ndarray:
         """Return (nuisance, nuisance) of the whitened columns."""
-        return _normal(self._white, self._white)
+        return products(self._white, self._white)
 
     def _value(self, lines: np.ndarray, x: np.ndarray, step: np.ndarray) -> float:
         """Return the objective of lines after a step from nuisances x."""
@@ -96,13 +95,3 @@ def nuisances_at(bench: Bench, base: Point, rows: Sequence[Coordinate]) -> Nuisa
     """Return the Nuisances about a Point, whose columns are found by runs."""
     lines = holding_lines(bench, [base])[0]
     return Nuisances(bench, base, tuple(rows), lines, columns(bench, base, rows, lines))
-
-
-def _normal(left: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Return (coordinate, coordinate) of whitened columns (coordinate, lines)."""
-    return 2.0 * INDEPENDENT * (left.conj() @ right.T).real.astype(float)
-
-
-def _pull(white: np.ndarray, residual: np.ndarray) -> np.ndarray:
-    """Return (coordinate,) of whitened columns (coordinate, lines) and a residual."""
-    return 2.0 * INDEPENDENT * (white.conj() @ residual).real.astype(float)

@@ -184,7 +184,7 @@ def _forward(
         screened = screened or screening.ranked
         failed |= {*screening.failed}
         raced = _race(at, about, screening.ranked)
-        if not _promises(at, raced, base):
+        if not _promises(about, raced, base):
             break
         new = _kept(at, _finals_of(at, raced[:FINALISTS], screening.ranked, nothing), nothing)
         found |= {each.point.name: each for each in new}
@@ -222,10 +222,10 @@ def _rated(hypothesis: Hypothesis) -> float:
     return hypothesis.worth - len(hypothesis.point.terms) * needed_gain(hypothesis.worth)
 
 
-def _promises(at: _Benches, raced: Sequence[Screened], base: Hypothesis) -> bool:
-    """Return whether one more effect may gain enough, by its gain in a race."""
-    lines = holding_lines(at.screened, [base.point])[0]
-    gain = max((each.gain for each in raced), default=0.0) / effective_lines(at.screened, lines)
+def _promises(about: Nuisances, raced: Sequence[Screened], base: Hypothesis) -> bool:
+    """Return whether one more effect may gain enough, by its gain in a race; about: the base."""
+    lines = effective_lines(about.bench, about.lines)
+    gain = max((each.gain for each in raced), default=0.0) / lines
     return gain > PROMISING * needed_gain(base.worth)
 
 
