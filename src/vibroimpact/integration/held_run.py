@@ -22,7 +22,7 @@ from vibroimpact.reduction.modal_model import ModalModel
 
 from .batch import Run, Schedule, start_amplitudes, start_state
 from .contact_convergence import CONTRACTION_LIMIT, IntegrationError, checked_contraction
-from .kernel_layout import MODE_COEFFICIENTS, ModalLayout
+from .kernel_layout import MODE_COEFFICIENTS, ModalLayout, aligned
 from .kernels.lanes import LANES
 from .kernels.tables import Contact, Hold, Laws, Modal, Output, State
 from .preload import seated
@@ -267,11 +267,14 @@ class _LaneLayout(ModalLayout):
         if self.alike:
             return tables[0]
         return tables[0]._replace(
-            **{
-                name: np.ascontiguousarray(np.stack([getattr(t, name) for t in tables], axis=-1))
-                for name in names
-            }
+            **{name: _by_lane([getattr(table, name) for table in tables]) for name in names}
         )
+
+
+def _by_lane(values):
+    """Return (coefficient, lane) of flat arrays, one of each lane."""
+    out = aligned((len(values[0]), len(values)))
+    return np.stack(values, axis=-1, out=out)
 
 
 def _same_modes(one: ModalLayout, other: ModalLayout, dt: float) -> bool:

@@ -112,14 +112,14 @@ class ModalLayout:
     def _modal(self, dt: float) -> Modal:
         step = self.step(dt)
         row_start, force_row_start, channels = [0], [], []
-        shapes: list[np.ndarray] = []
+        shapes: list[np.ndarray] = []  # (row, mode) of each group
         compliance: list[np.ndarray] = []
         for g, (modes, driven) in enumerate(self.groups):
             implicit = len(self.implicit_shapes[g])
             moved = self._group_row_shapes(g)
             rows = np.zeros((len(moved), self.mode_start[g + 1] - self.mode_start[g]))
             rows[:, : len(modes)] = moved
-            shapes.append(rows.ravel())
+            shapes.append(rows)
             moved = rows[:, : len(modes)]
             compliance.append(((moved * step.mode_compliance[modes]) @ moved.T).ravel())
             force_row_start.append(row_start[-1] + implicit)
@@ -131,7 +131,7 @@ class ModalLayout:
             row_start=np.array(row_start, np.int64),
             force_row_start=np.array(force_row_start, np.int64),
             row_force_channel=np.array(channels, np.int64),
-            shapes=np.concatenate(shapes),
+            shapes=np.concatenate([_by_panel(rows) for rows in shapes]),
             shape_start=_starts(shapes),
             row_compliance=np.concatenate([*compliance, np.zeros(1)]),
             compliance_start=_starts(compliance),
@@ -145,11 +145,11 @@ class ModalLayout:
     ) -> dict[str, np.ndarray]:
         """The tables of Modal for one run, from those of every group."""
         by_mode, by_force = [], []
-        for g, (flat, square) in enumerate(zip(shapes, compliance, strict=True)):
-            width, implicit = np.diff(self.mode_start)[g], len(self.implicit_shapes[g])
+        for g, (moved, square) in enumerate(zip(shapes, compliance, strict=True)):
+            implicit = len(self.implicit_shapes[g])
             if self.lanes == 1:
-                blocks = _blocks_of_rows(flat.reshape(-1, width))
-                panels = blocks.reshape(len(blocks), width // PANEL, PANEL, PANEL)
+                blocks = _blocks_of_rows(moved)
+                panels = blocks.reshape(len(blocks), moved.shape[1] // PANEL, PANEL, PANEL)
                 by_mode.append(panels.transpose(1, 0, 2, 3).ravel())
                 rows = int(np.sqrt(square.size))
                 on_forces = square.reshape(rows, rows)[:implicit, :implicit]
@@ -287,7 +287,7 @@ class ModalLayout:
         """Room for a number of steps of every row, none for 0."""
         rows, _ = self._rows_and_supports()
         shape = rows, steps, self.lanes
-        return Trace(_aligned(shape), _aligned(shape), int(steps))
+        return Trace(aligned(shape), aligned(shape), int(steps))
 
     def hold(self, modal: Modal) -> Hold:
         """The kernel's Hold: no sensor is held."""
@@ -317,9 +317,9 @@ class ModalLayout:
             lag_start=lags * np.arange(rows + 1, dtype=np.int64),
             decay=np.exp(-turn),
             gain=-np.expm1(-turn) / turn,
-            lag=_aligned((rows * lags, self.lanes)),
+            lag=aligned((rows * lags, self.lanes)),
             **{name: stacked(name) for name in ("stiffness", "damping", "lag_stiffness")},
-            **{name: _aligned((rows, self.lanes)) for name in moving},
+            **{name: aligned((rows, self.lanes)) for name in moving},
         )
 
     def state(self) -> State:
@@ -328,21 +328,21 @@ class ModalLayout:
         laws, elements = self._laws_and_elements()
         other_channels = 2 * supports + self.drive_shapes.shape[1]
         return State(
-            q=_aligned((RATIO, self.padded, self.lanes)),
-            q_next_free=_aligned((self.padded, self.lanes)),
-            dq=_aligned((self.padded, self.lanes)),
+            q=aligned((RATIO, self.padded, self.lanes)),
+            q_next_free=aligned((self.padded, self.lanes)),
+            dq=aligned((self.padded, self.lanes)),
             group_active=np.array([len(driven) > 0 for _, driven in self.groups], np.int64),
-            row_displacement=_aligned((rows, self.lanes)),
-            row_displacement_before=_aligned((rows, self.lanes)),
-            row_velocity=_aligned((rows, self.lanes)),
-            row_force=_aligned((rows, self.lanes)),
-            row_force_before=_aligned((rows, self.lanes)),
-            row_deflection=_aligned((rows, self.lanes)),
-            row_deflection_before=_aligned((rows, self.lanes)),
-            friction_force=_aligned((laws, self.lanes)),
-            slider_force=_aligned((elements, self.lanes)),
-            touching=_aligned((supports, self.lanes)),
-            filter_sums=_aligned((SLOTS, self.padded + other_channels, self.lanes)),
+            row_displacement=aligned((rows, self.lanes)),
+            row_displacement_before=aligned((rows, self.lanes)),
+            row_velocity=aligned((rows, self.lanes)),
+            row_force=aligned((rows, self.lanes)),
+            row_force_before=aligned((rows, self.lanes)),
+            row_deflection=aligned((rows, self.lanes)),
+            row_deflection_before=aligned((rows, self.lanes)),
+            friction_force=aligned((laws, self.lanes)),
+            slider_force=aligned((elements, self.lanes)),
+            touching=aligned((supports, self.lanes)),
+            filter_sums=aligned((SLOTS, self.padded + other_channels, self.lanes)),
             counter=np.array([QUIET, 0], np.int64),
         )
 
@@ -371,7 +371,7 @@ class ModalLayout:
             "peak_square_stress": sections,
         }
         return Tally(
-            **{name: _aligned((counts.get(name, supports), self.lanes)) for name in Tally._fields}
+            **{name: aligned((counts.get(name, supports), self.lanes)) for name in Tally._fields}
         )
 
     def work(self) -> Work:
@@ -386,9 +386,12 @@ class ModalLayout:
             "slider_force": elements,
             "frozen_slider_force": elements,
         }
-        return Work(
-            **{name: _aligned((counts.get(name, rows), self.lanes)) for name in Work._fields}
-        )
+        space = {
+            name: aligned((counts.get(name, rows), self.lanes))
+            for name in Work._fields
+            if name != "bearing"
+        }
+        return Work(**space, bearing=np.zeros(rows, np.int64))
 
     def output(self, weights: np.ndarray, columns: int, steps_per_second: float) -> Output:
         """Output buffers: displacement channels are the sensors, then the shape line; then the
@@ -427,7 +430,7 @@ class ModalLayout:
             stress_start=int(stress_start),
             stress_weight=stress_weight(steps_per_second),
             supports=supports,
-            values=_aligned((stress_start + other_channels, columns, self.lanes)),
+            values=aligned((stress_start + other_channels, columns, self.lanes)),
             columns=int(columns),
             column=0,
         )
@@ -509,6 +512,12 @@ def _blocks_of_rows(values: np.ndarray) -> np.ndarray:
     return padded.reshape(len(padded) // PANEL, PANEL, values.shape[1]).transpose(0, 2, 1)
 
 
+def _by_panel(rows: np.ndarray) -> np.ndarray:
+    """(row, mode) flat, as the kernel goes through it: panel by panel, row by row."""
+    panels = rows.reshape(len(rows), rows.shape[1] // PANEL, PANEL)
+    return panels.transpose(1, 0, 2).ravel()
+
+
 def _starts(parts: Sequence[np.ndarray]) -> np.ndarray:
     """Index of the first value of each part when they are put end to end."""
     return np.concatenate([[0], np.cumsum([part.size for part in parts])[:-1]]).astype(np.int64)
@@ -519,7 +528,7 @@ def _inverse(values: np.ndarray) -> np.ndarray:
     return np.divide(1.0, values, out=np.zeros(np.shape(values)), where=values != 0.0)
 
 
-def _aligned(shape: tuple[int, ...]) -> np.ndarray:
+def aligned(shape: tuple[int, ...]) -> np.ndarray:
     """Zeros that start on a cache line, so that no vector straddles two; room behind them for a
     block of rows.
     """

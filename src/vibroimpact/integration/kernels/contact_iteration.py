@@ -4,6 +4,7 @@ from .compiled import inlined
 from .force_laws import all_forces, elastic_circle_force, penetration, radial_offset
 from .lanes import (
     LANES,
+    all_lanes,
     any_lane,
     fma,
     in_every_lane,
@@ -18,31 +19,41 @@ from .lanes import (
 from .panels import PANEL, panel_plus_vector, panel_zero, store_panel
 from .tables import QUIET, STEPS_WITHOUT_FORCE
 
+NO_FORCE = 1e-300  # N, below which a force is none
+
 
 @inlined
-def apply_compliance(modal, force, deflection):
+def apply_compliance(modal, force, deflection, bearing):
     """deflection = G force on the contact and element rows of every group, each (row, lane); five
-    rows at a time, of one run PANEL rows.
+    rows at a time, of one run PANEL rows. Rows without a force in any lane add nothing.
+
+    bearing: room for the numbers of the rows with a force.
     """
     G = modal.row_compliance
     for g in range(modal.row_start.size - 1):
         row0, row_f = modal.row_start[g], modal.force_row_start[g]
+        count = rows_with_force(force, row0, row_f, bearing)
         if LANES == 1:
             at = modal.block_compliance_start[g]
             for r in range(row0, row_f, PANEL):
                 rows = panel_zero()
-                for s in range(row0, row_f):
-                    rows = panel_plus_vector(modal.block_compliance, at, load(force, s), rows)
-                    at += PANEL
+                for k in range(count):
+                    s = bearing[k]
+                    from_force = at + (s - row0) * PANEL
+                    rows = panel_plus_vector(
+                        modal.block_compliance, from_force, load(force, s), rows
+                    )
+                at += (row_f - row0) * PANEL
                 store_panel(deflection, r, rows)
             continue
         stride = modal.row_start[g + 1] - row0
-        at = modal.compliance_start[g]
+        at = modal.compliance_start[g] - row0
         r = row0
         while r + 5 <= row_f:
             a, b, c, d, e = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-            for s in range(row_f - row0):
-                f = load(force, row0 + s)
+            for k in range(count):
+                s = bearing[k]
+                f = load(force, s)
                 a = fma(spread_from(G, at + s), f, a)
                 b = fma(spread_from(G, at + stride + s), f, b)
                 c = fma(spread_from(G, at + 2 * stride + s), f, c)
@@ -57,11 +68,24 @@ def apply_compliance(modal, force, deflection):
             at += 5 * stride
         while r < row_f:
             a = spread(0.0)
-            for s in range(row_f - row0):
-                a = fma(spread_from(G, at + s), load(force, row0 + s), a)
+            for k in range(count):
+                a = fma(spread_from(G, at + bearing[k]), load(force, bearing[k]), a)
             store(deflection, r, a)
             r += 1
             at += stride
+
+
+@inlined
+def rows_with_force(force, first, end, bearing):
+    """Put the numbers of the rows from first to end with a force in any lane into ``bearing``;
+    their number. One that is not a number counts as a force.
+    """
+    count = 0
+    for r in range(first, end):
+        if not all_lanes(spread(NO_FORCE) > magnitude(load(force, r))):
+            bearing[count] = r
+            count += 1
+    return count
 
 
 @inlined
@@ -90,6 +114,8 @@ def lanes_in_contact(contact, laws, work):
     """
     near = in_every_lane(laws.element_row.size > 0)
     for p in range(contact.row_1.size):
+        if contact.plain[p] == 0:
+            continue
         u1, u2 = load(work.u_free, contact.row_1[p]), load(work.u_free, contact.row_2[p])
         _, _, r_squared = radial_offset(contact, p, u1, u2)
         gap = load(contact.gap, p)
@@ -135,7 +161,7 @@ def fixed_point(modal, contact, laws, special, iterating, state, tally, work):
         else:
             change, size = update_plain_forces(contact, work, iterating)
         last_change = where(iterating, change, last_change)
-        apply_compliance(modal, work.force, work.deflection)
+        apply_compliance(modal, work.force, work.deflection, work.bearing)
         for g in range(modal.row_start.size - 1):
             for r in range(modal.row_start[g], modal.force_row_start[g]):
                 store(work.u, r, load(work.u_free, r) + load(work.deflection, r))

@@ -151,7 +151,9 @@ def all_forces(modal, contact, laws, state, work, u):
     """
     for p in range(contact.row_1.size):
         r1, r2 = contact.row_1[p], contact.row_2[p]
-        f1, f2 = elastic_circle_force(contact, p, load(u, r1), load(u, r2))
+        f1, f2 = spread(0.0), spread(0.0)
+        if contact.plain[p] != 0:
+            f1, f2 = elastic_circle_force(contact, p, load(u, r1), load(u, r2))
         store(work.new_force, r1, f1)
         store(work.new_force, r2, f2)
     for k in range(laws.contact_point.size):

@@ -61,11 +61,10 @@ def add_panel_to_rows(modal, g, i, panel, q, rows):
             add_modes_to_rows(modal.block_shapes, at, q, i, rows, r)
             at += PANEL * PANEL
     else:
-        width = modal.mode_start[g + 1] - modal.mode_start[g]
-        at = modal.shape_start[g] + i - modal.mode_start[g]
+        at = modal.shape_start[g] + (i - modal.mode_start[g]) * (row1 - row0)
         for r in range(row0, row1):
             store(rows, r, vector_plus_dot(modal.shapes, at, panel, load(rows, r)))
-            at += width
+            at += PANEL
 
 
 @inlined
@@ -94,19 +93,21 @@ def apply_drive(modal, drive, n, forces, fluid, work):
     and add G_d d to u_free.
     """
     for g in range(modal.row_start.size - 1):
-        row0, row1 = modal.row_start[g], modal.row_start[g + 1]
-        for f in range(modal.force_row_start[g], row1):
+        row0, row_f, row1 = modal.row_start[g], modal.force_row_start[g], modal.row_start[g + 1]
+        for f in range(row_f, row1):
             channel = modal.row_force_channel[f]
             if channel < forces:
                 d = load(drive, n * forces + channel)
             else:
                 d = load(fluid.force, channel - forces)
             store(work.force, f, d)
-            at = modal.compliance_start[g] + f - row0
-            for r in range(row0, row1):
-                u_free = fma(spread_from(modal.row_compliance, at), d, load(work.u_free, r))
-                store(work.u_free, r, u_free)
-                at += row1 - row0
+        for r in range(row0, row1):
+            at = modal.compliance_start[g] + (r - row0) * (row1 - row0) + row_f - row0
+            u_free = load(work.u_free, r)
+            for f in range(row_f, row1):
+                u_free = fma(spread_from(modal.row_compliance, at), load(work.force, f), u_free)
+                at += 1
+            store(work.u_free, r, u_free)
 
 
 @inlined
@@ -122,14 +123,13 @@ def correct_and_predict(modal, state, tally, work, in_contact, phase):
         if state.group_active[g] == 0:
             continue
         first = modal.mode_start[g]
-        width = modal.mode_start[g + 1] - first
         row0, row1 = modal.row_start[g], modal.row_start[g + 1]
         first_row = row0 if in_contact else modal.force_row_start[g]
-        for i in range(first, first + width, PANEL):
-            at = modal.shape_start[g] + i - first
+        for i in range(first, modal.mode_start[g + 1], PANEL):
+            at = modal.shape_start[g] + (i - first) * (row1 - row0)
             p = panel_zero()
             for r in range(first_row, row1):
-                p = panel_plus_vector(modal.shapes, at + (r - row0) * width, load(work.force, r), p)
+                p = panel_plus_vector(modal.shapes, at + (r - row0) * PANEL, load(work.force, r), p)
             q = panel_plus_scaled(modal.mode_compliance, i, p, load_panel(state.q_next_free, i))
             step = panel_difference(q, load_panel(state.q, before + i))
             dissipated = vector_plus_dot(
@@ -196,8 +196,8 @@ def initial_forces(modal, contact, laws, state, work):
         store(state.row_velocity, r, load(state.row_velocity, r) * memory_weight)
         store(state.row_force, r, load(work.new_force, r))
         store(state.row_force_before, r, load(work.new_force, r))
-    apply_compliance(modal, state.row_force, state.row_deflection)
-    apply_compliance(modal, state.row_force_before, state.row_deflection_before)
+    apply_compliance(modal, state.row_force, state.row_deflection, work.bearing)
+    apply_compliance(modal, state.row_force_before, state.row_deflection_before, work.bearing)
     state.counter[STEPS_WITHOUT_FORCE] = 0
 
 

@@ -19,8 +19,8 @@ class Modal(NamedTuple):
     """The modes, in uncoupled groups (in plane, out of plane), each padded to whole panels.
 
     The rows of a group are its contact directions, then its local elements, then its force
-    channels. ``shapes`` holds for each group a (row, mode of the group) matrix, flat, from
-    ``shape_start``; ``row_compliance`` in the same way a (row, row) matrix.
+    channels. ``shapes`` holds for each group, from ``shape_start``, a (panel, row, mode of the panel)
+    array, flat, in the order in which a step reads it; ``row_compliance`` a (row, row) matrix.
 
     If each lane has a model of its own, shapes, row_compliance, the coefficients of the modes and
     Output.shapes have a last axis of lanes.
@@ -170,6 +170,7 @@ class Work(NamedTuple):
     frozen_slider_force: np.ndarray  # (element, lane) N
     resultant: np.ndarray  # (support, 2, lane) N
     channels: np.ndarray  # (displacement channel + 2 stress channels per section + 1, lane)
+    bearing: np.ndarray  # (row,) int64: room for the rows that bear a force, see apply_compliance
 
 
 class Output(NamedTuple):
