@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
-from vibroimpact.diagnosis.measurement.usable import usable
+from vibroimpact.diagnosis.measurement.attached_model import attach
+from vibroimpact.diagnosis.measurement.usable import Refused, checks_of_completed, usable
 from vibroimpact.excitation.random_force import band_limited_noise
 
 RATE, Y = 2048.0, (0.0, 1.0, 0.0)
@@ -40,3 +41,34 @@ def test_contact_forces_that_a_model_has_not_are_left_out(study_config, place, d
     assert ("cell" in found["channel_name"].values) == (told is None)
     rows = [row["message"] for row in checks if row["check"] == "channels"]
     assert rows == [] if told is None else told in rows[0]
+
+
+def test_a_channel_passes_that_follows_the_completed_model(study_config):
+    channels = [
+        Channel(name, place, Y, "m", "displacement")
+        for name, place in (("apex", APEX), ("drive", DRIVE))
+    ]
+    drive = Channel("shaker", DRIVE, Y, "N", "generic")
+    levels = [Level("low", 2.9e-4), Level("high", 2.9e-4)]
+    rng = np.random.default_rng(2)
+    force = np.stack([band_limited_noise(rng, 32768, RATE, (5.0, 200.0)) for _ in range(2)])
+    force = force[:, None] * np.array([1e-3, 9e-3])[:, None, None]
+    still = campaign_dataset(force, np.zeros((2, 2, 32768)), channels, [drive], levels, RATE)
+    model = attach(study_config, still)
+    s = 2j * np.pi * np.fft.rfftfreq(32768, 1.0 / RATE)
+    receptance = 1.0 / (model.omega[:, None] ** 2 + s**2 + model.damping[:, None] * s)
+    lines = (model.sensor_shapes * model.drive_shapes).T @ receptance * np.fft.rfft(force)
+    turned = campaign_dataset(
+        *(force, -np.fft.irfft(lines, 32768), channels, [drive], levels, RATE)
+    )
+    excitation = study_config.excitation.model_copy(update={"turn_deg": 180.0})
+    completed = study_config.model_copy(update={"excitation": excitation})
+    with pytest.raises(Refused) as refusal:  # both channels are reversed, and left out
+        usable(turned, study_config)
+    said = {row["channel"]: row["level"] for row in refusal.value.checks if row["channel"]}
+    assert said == {"apex": "warn", "drive": "warn"}
+    settled = checks_of_completed(refusal.value.checks, turned, completed)
+    assert {row["channel"]: row["level"] for row in settled if row["channel"]} == dict.fromkeys(
+        said, "pass"
+    )
+    assert checks_of_completed(refusal.value.checks, turned, study_config) == refusal.value.checks

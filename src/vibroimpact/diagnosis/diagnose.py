@@ -52,7 +52,7 @@ from .identified.search import left_and_floor, search_laws
 from .identified.structure_file import model_of
 from .measurement.attached_model import with_channel_points
 from .measurement.signals import Signals, signals_of
-from .measurement.usable import Refused, not_testable, usable
+from .measurement.usable import Refused, checks_of_completed, not_testable, usable
 from .next_measurement import next_measurement
 from .search import Hypothesis, Search, search, search_from
 
@@ -150,7 +150,10 @@ def run_diagnosis(
             runs = with_after(runs, comparison.structure, comparison.signals, point)
         decision, runs = free_search(comparison, searched, decision, runs, log)
     return _concluded(
-        _Found(comparison.signals, searched, decision, runs, checks, provenance or {}, comparison),
+        _Found(
+            *(comparison.signals, searched, decision, runs, checks, provenance or {}, comparison),
+            campaign=campaign,
+        ),
         costs.total(),
     )
 
@@ -232,6 +235,16 @@ class _Found:
     provenance: dict[str, Any]
     comparison: Comparison | None = None
     identified: Identified | None = None
+    campaign: xr.Dataset | str | Path | None = None
+
+    def checks_with(self, decision: Decision) -> list[dict[str, Any]]:
+        """Return the rows of checks, given the model that a Decision completes."""
+        if self.comparison is None or decision.best is None or self.campaign is None:
+            return self.checks
+        if decision.verdict in ("none", "unknown"):
+            return self.checks
+        completed = self.comparison.structure.configuration(decision.best.point.terms)
+        return checks_of_completed(self.checks, self.campaign, completed)
 
     def effect_rows(self, hypothesis: Hypothesis) -> list[dict[str, Any]]:
         """Return the rows of the effects of a hypothesis."""
@@ -336,6 +349,7 @@ def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
         misfits, effects = _misfits(found), []
     elif decision.verdict == "unknown" and found.decision.verdict not in ("none", "unknown"):
         withdrawn = {"effects": effects, "misfit": misfits}
+    checks = [*found.checks_with(decision), *_lost_rows(found), *_free_rows(decision)]
     content = {
         **_decided(decision, effects),
         "regions": (
@@ -344,7 +358,7 @@ def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
         "misfit": misfits,
         "p_global_before": None,
         "p_global_after": None,
-        "checks": _contract([*found.checks, *_lost_rows(found), *_free_rows(decision)]),
+        "checks": _contract(checks),
         "not_run": list(found.searched.failed),
         "not_testable": found.not_testable(),
         "provenance": found.provenance,

@@ -25,6 +25,7 @@ from .attached_model import attach
 from .sensed_motion import of_modes, orders
 
 CONTRADICTED = ("swapped channels", "directions")  # checks whose channels are left out
+AGAINST_MODEL = "against the model"  # key of rows that compare a channel with the model as given
 FEWEST_RECORDS = 2
 
 
@@ -57,6 +58,33 @@ def usable(
             checks += more
             found = _left(whole, checks)
     return found, checks
+
+
+def checks_of_completed(
+    checks: Sequence[dict[str, Any]], campaign: xr.Dataset | str | Path, completed: Config
+) -> list[dict[str, Any]]:
+    """Return the rows of checks of `usable`, in which channels pass that contradict the model as
+    given and not the completed one: the model was at fault, not the channel.
+    """
+    if not any(row.get(AGAINST_MODEL) for row in checks):
+        return list(checks)
+    whole, _ = checked_campaign(campaign)
+    rows = [] if whole is None else _against_model(completed, whole)
+    still = {row["channel"] for row in rows if row.get(AGAINST_MODEL)}
+    return [
+        (
+            check_row(
+                row["check"],
+                "pass",
+                f"{row['channel']} contradicts the model as given, and not the completed one.",
+                row["record"],
+                row["channel"],
+            )
+            if row.get(AGAINST_MODEL) and row["channel"] not in still
+            else row
+        )
+        for row in checks
+    ]
 
 
 def not_testable(campaign: xr.Dataset) -> list[str]:
@@ -133,6 +161,6 @@ def _against_model(config: Config, campaign: xr.Dataset) -> list[dict[str, Any]]
     driven = model.drive_shapes @ forces
     motion = np.einsum("mc,ml,ml->cl", model.sensor_shapes, driven, receptance)
     motion *= s ** orders(measured.kinds)[:, None] * of_modes(measured.kinds)[:, None]
-    return rows + compare_with_model(
-        spectra, motion, measured.channels, measured.kinds, measured.records[record]
-    )
+    channels = measured.channels, measured.kinds, measured.records[record]
+    against = compare_with_model(spectra, motion, *channels)
+    return rows + [row | {AGAINST_MODEL: True} for row in against]

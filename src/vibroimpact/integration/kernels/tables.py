@@ -19,8 +19,9 @@ class Modal(NamedTuple):
     """The modes, in uncoupled groups (in plane, out of plane), each padded to whole panels.
 
     The rows of a group are its contact directions, then its local elements, then its force
-    channels. ``shapes`` holds for each group, from ``shape_start``, a (panel, row, mode of the panel)
-    array, flat, in the order in which a step reads it; ``row_compliance`` a (row, row) matrix.
+    channels. ``shapes`` holds for each group, from ``shape_start`` on, an array (panel, row, mode
+    of the panel), flat, in the order in which a step reads it; ``row_compliance`` in the same way
+    a (row, row) matrix.
 
     If each lane has a model of its own, shapes, row_compliance, the coefficients of the modes and
     Output.shapes have a last axis of lanes.
