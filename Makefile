@@ -71,12 +71,15 @@ format: $(READY) ## format Python files and rules
 	$(BIN)/ruff format
 	$(BIN)/snakefmt Snakefile workflow evidence/rules examples src/vibroimpact/study/folder
 
+# OpenSees (1: environment) finds its BLAS only where the loader looks.
+opensees = LD_LIBRARY_PATH="$$(echo $(1)/lib/python3*/site-packages/openseespylinux/lib)"
+
 judges: $(READY_JUDGES) ## tests against other codes, in an environment of their own
-	.venv-judges/bin/python -m pytest tests/judges -rs
+	$(call opensees,.venv-judges) .venv-judges/bin/python -m pytest tests/judges -rs
 
 benchmark: $(READY_BENCHMARK) ## speed beside other codes: writes docs/performance.md
 	.venv-benchmark/bin/python -m evidence.benchmarks.work_precision
-	.venv-benchmark/bin/python -m evidence.benchmarks
+	$(call opensees,.venv-benchmark) .venv-benchmark/bin/python -m evidence.benchmarks
 
 docs: $(READY_DOCS) ## the documentation site: docs/_build/html/index.html
 	.venv-docs/bin/sphinx-build -q -W --keep-going -b html docs docs/_build/html
