@@ -154,62 +154,18 @@ def campaign_dataset(
         )
         names = [name for name in whole.variables if str(name).startswith("force")]
         return whole.drop_vars([*names, "load_rms"])
-    band = band_of(attributes)
-    kinds = [BASE if drive.kind == BASE else FORCE for drive in drives]
-    factor = [
-        _factor(f"force channel {drive.name}", drive.units, BASE if kind == BASE else "excitation")
-        for drive, kind in zip(drives, kinds, strict=True)
-    ]
-    if BASE in kinds:
-        optional = {"force_channel_kind": np.array(kinds, dtype=object), **(optional or {})}
+    load = _loads(np.asarray(force), drives[0], sampling_frequency, band_of(attributes))
+    units = {"units": drives[0].units} if len(drives) == 1 else {}
     data: dict[str, tuple] = {
-        "force": (
-            ("record", "force_channel", "time"),
-            np.asarray(force, np.float32),
-            {"units": drives[0].units} if len(drives) == 1 else {},
-        ),
+        "force": (("record", "force_channel", "time"), np.asarray(force, np.float32), units),
         "response": (("record", "channel", "time"), np.asarray(response, np.float32)),
-        **{
-            f"channel_{key}": (
-                "channel",
-                np.array([getattr(channel, key) for channel in channels], dtype=object),
-            )
-            for key in ("units", "kind", "name")
-        },
-        "force_channel_name": (
-            "force_channel",
-            np.array([drive.name for drive in drives], dtype=object),
-        ),
-        "force_channel_units": (
-            "force_channel",
-            np.array([drive.units for drive in drives], dtype=object),
-        ),
-        "record_name": ("record", np.array([level.name for level in levels], dtype=object)),
-        "load_rms": (
-            "record",
-            factor[0]
-            * np.array([load_of(each[0], sampling_frequency, band) for each in np.asarray(force)]),
-            {"units": "m s-2" if kinds[0] == BASE else "N"},
-        ),
-        "gap": ("record", np.array([level.gap_m for level in levels], float), {"units": "m"}),
-        "repeat": ("record", np.array([level.repeat for level in levels], np.int64)),
-        "split": ("record", np.array([level.split for level in levels], dtype=object)),
+        "load_rms": ("record", load, {"units": "m s-2" if drives[0].kind == BASE else "N"}),
         "time": ("time", np.arange(np.shape(force)[-1]) / sampling_frequency, {"units": "s"}),
+        **_channel_variables("channel", channels),
+        **_channel_variables("force_channel", drives),
+        **_level_variables(levels),
         **{name: (OPTIONAL[name], np.asarray(values)) for name, values in (optional or {}).items()},
     }
-    for prefix, group, dim in (
-        ("channel", channels, "channel"),
-        ("force_channel", drives, "force_channel"),
-    ):
-        data[f"{prefix}_point"] = (
-            (dim, "xyz"),
-            np.array([item.point for item in group], float),
-            {"units": "m"},
-        )
-        data[f"{prefix}_direction"] = (
-            (dim, "xyz"),
-            np.array([item.direction for item in group], float),
-        )
     defaults = {
         "antialias": "fir80",
         "start_up": "stationary",
@@ -220,6 +176,51 @@ def campaign_dataset(
     return xr.Dataset(
         data, attrs={"sampling_frequency": float(sampling_frequency), **defaults, **attributes}
     )
+
+
+def _loads(force, drive, sampling_frequency, band):
+    """Return (record,) the RMS of the first force channel, whose Channel is `drive`, in SI units.
+
+    force (record, force_channel, sample).
+    """
+    kind = BASE if drive.kind == BASE else "excitation"
+    factor = _factor(f"force channel {drive.name}", drive.units, kind)
+    return factor * np.array([load_of(each[0], sampling_frequency, band) for each in force])
+
+
+def _channel_variables(prefix, channels):
+    """Return {name: variable} of the names, units, kinds and places of Channels: those of forces
+    have a kind if one is an acceleration of the base.
+    """
+    if prefix == "channel":
+        kinds = [channel.kind for channel in channels]
+    else:
+        kinds = [BASE if channel.kind == BASE else FORCE for channel in channels]
+    columns: dict[str, list] = {
+        "name": [channel.name for channel in channels],
+        "units": [channel.units for channel in channels],
+        **({"kind": kinds} if prefix == "channel" or BASE in kinds else {}),
+    }
+    points = np.array([channel.point for channel in channels], float)
+    directions = np.array([channel.direction for channel in channels], float)
+    return {
+        **{
+            f"{prefix}_{key}": (prefix, np.array(values, dtype=object))
+            for key, values in columns.items()
+        },
+        f"{prefix}_point": ((prefix, "xyz"), points, {"units": "m"}),
+        f"{prefix}_direction": ((prefix, "xyz"), directions),
+    }
+
+
+def _level_variables(levels):
+    """Return {name: variable} of the names, gaps, repeats and splits of Levels."""
+    return {
+        "record_name": ("record", np.array([level.name for level in levels], dtype=object)),
+        "gap": ("record", np.array([level.gap_m for level in levels], float), {"units": "m"}),
+        "repeat": ("record", np.array([level.repeat for level in levels], np.int64)),
+        "split": ("record", np.array([level.split for level in levels], dtype=object)),
+    }
 
 
 def write_campaign(campaign: xr.Dataset, path: str | Path) -> None:

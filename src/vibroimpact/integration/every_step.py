@@ -69,10 +69,7 @@ def integrate_every_step(
     contact = layout.contact(lanes_gap, to_lanes(imperfection, 0.0, layout.lanes), contraction)
     laws = layout.laws(lanes_gap)
     state, tally, work = layout.state(), layout.tally(), layout.work()
-    channels = model.drive_shapes.shape[1]
-    force = np.zeros((ticks * RATIO + 1, layout.drive_shapes.shape[1], layout.lanes))
-    force[:, :channels, :cases] = drive(0, ticks * RATIO + 1)
-    force[:, channels:] = 1.0  # the dead load, see ModalLayout.drive_shapes
+    force = _forces(layout, drive, ticks * RATIO + 1, cases)
     fluid, start = layout.fluid(modal, cases), start_amplitudes(model, rest)
     start_state(layout, modal, contact, laws, fluid, state, work, force[0], start)
     start_displacement, start_force = state.row_displacement.copy(), state.row_force.copy()
@@ -94,20 +91,9 @@ def integrate_every_step(
         np.ascontiguousarray(force[1:]),
     )
     if done < ticks * RATIO:
-        moved = np.abs(state.row_displacement[:, :cases])
-        moved[~np.isfinite(moved)] = np.inf
-        raise IntegrationError(
-            f"diverged at t = {done / steps_per_second:.4f} s: raise integration.steps_per_second"
-            " or check forces and stiffnesses",
-            case=int(np.argmax(np.max(moved, axis=0))),
-        )
-    displacement, force_on_rows = (
-        np.concatenate([first[:, None], rest], axis=1)[..., :cases].transpose(2, 0, 1)
-        for first, rest in (
-            (start_displacement, trace.displacement),
-            (start_force, trace.force),
-        )
-    )
+        raise _diverged(done / steps_per_second, state.row_displacement[:, :cases])
+    displacement = _with_start(start_displacement, trace.displacement)[:cases]
+    force_on_rows = _with_start(start_force, trace.force)[:cases]
     contacts, elements = layout.contact_rows(), layout.element_rows()
     mechanical = np.sum(modal_energies(layout, modal.dt, state), axis=0) - mechanical_before
     stored = stored_energy(contact, laws, state) - stored_before
@@ -128,3 +114,28 @@ def integrate_every_step(
         sliding_work=tally.sliding_work[:, :cases].T,
         slip_work=tally.slip_work[:, :cases].T,
     )
+
+
+def _diverged(time_s: float, displacement: np.ndarray) -> IntegrationError:
+    """Return the error of the case that moved most, from the displacements (row, case)."""
+    moved = np.abs(displacement)
+    moved[~np.isfinite(moved)] = np.inf
+    return IntegrationError(
+        f"diverged at t = {time_s:.4f} s: raise integration.steps_per_second or check forces and"
+        " stiffnesses",
+        case=int(np.argmax(np.max(moved, axis=0))),
+    )
+
+
+def _forces(layout: ModalLayout, drive: Drive, count: int, cases: int) -> np.ndarray:
+    """Return (count, force_channel, lane) N from the start on, and the dead load."""
+    channels = layout.model.drive_shapes.shape[1]
+    force = np.zeros((count, layout.drive_shapes.shape[1], layout.lanes))
+    force[:, :channels, :cases] = drive(0, count)
+    force[:, channels:] = 1.0  # the dead load, see ModalLayout.drive_shapes
+    return force
+
+
+def _with_start(start: np.ndarray, rest: np.ndarray) -> np.ndarray:
+    """Return (lane, row, 1 + step) of a start (row, lane) and what follows, (row, step, lane)."""
+    return np.concatenate([start[:, None], rest], axis=1).transpose(2, 0, 1)

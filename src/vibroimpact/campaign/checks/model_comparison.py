@@ -116,25 +116,12 @@ def compare_with_model(
     rows: list[dict] = []
     exchanged: dict[int, int] = {}
     for first, second in _swaps(misfit, [kinds[channel] for channel in channels]):
-        one, other = names[channels[first]], names[channels[second]]
+        pair = names[channels[first]], names[channels[second]]
         exchanged |= {first: second, second: first}
-        rows += [
-            _row(
-                "swapped channels",
-                record,
-                this,
-                f"{this} moves as the model does at {that}, and {that} as it does at {this}, in"
-                f" record {record}: the two seem swapped (misfit {misfit[first, second]:.1f}"
-                f" instead of {misfit[first, first]:.1f} dB).",
-            )
-            for this, that in ((one, other), (other, one))
-        ]
+        rows += _swap_rows(pair, record, misfit[first, second], misfit[first, first])
     for index, channel in enumerate(channels):
         place = exchanged.get(index, index)
-        cosine = np.real(h1[index] * model[place].conj()) / np.maximum(
-            np.abs(h1[index] * model[place]), np.finfo(float).tiny
-        )
-        if np.average(cosine, weights=weights[index]) < OPPOSITE:
+        if _mean_cosine(h1[index], model[place], weights[index]) < OPPOSITE:
             rows.append(
                 _row(
                     "swapped channels",
@@ -157,6 +144,28 @@ def compare_with_model(
                 )
             )
     return _merge_gains(rows)
+
+
+def _swap_rows(pair, record, after_dB, before_dB):
+    """Return the rows of two channels that fit better when exchanged."""
+    return [
+        _row(
+            "swapped channels",
+            record,
+            this,
+            f"{this} moves as the model does at {that}, and {that} as it does at {this}, in"
+            f" record {record}: the two seem swapped (misfit {after_dB:.1f} instead of"
+            f" {before_dB:.1f} dB).",
+        )
+        for this, that in (pair, pair[::-1])
+    ]
+
+
+def _mean_cosine(h1, model, weights):
+    """Return the weighted mean cosine of the phase between two responses (line,)."""
+    product = h1 * model.conj()
+    cosine = np.real(product) / np.maximum(np.abs(product), np.finfo(float).tiny)
+    return np.average(cosine, weights=weights)
 
 
 def _merge_gains(rows: list[dict]) -> list[dict]:

@@ -54,16 +54,7 @@ def simulate_records(
     for first in range(0, len(runs), LANES):
         batch = runs[first : first + LANES]
         gaps = np.array([gap if np.isfinite(gap) else NO_GAP_M for _, gap, _ in batch])
-        offsets = np.stack(
-            [
-                np.random.default_rng([seed, record]).uniform(
-                    -IMPERFECTION, IMPERFECTION, (len(model.support_of_point), 2)
-                )
-                * gap
-                for (record, _, seed), gap in zip(batch, gaps, strict=True)
-            ],
-            axis=-1,
-        )
+        offsets = _offsets(len(model.support_of_point), batch, gaps)
         offsets, seat = seated(model, schedule, gaps, offsets)
         initial = rest_state(model, schedule, gaps, offsets, seat)
         led, lead = (schedule, 0) if initial is None else _led(schedule)
@@ -92,6 +83,17 @@ def simulate_records(
                 lost.add(error.case)
         out[[first + case for case in lost]] = np.nan
     return out
+
+
+def _offsets(points, batch, gaps):
+    """Return (point, 2, run) in m: offsets of the obstacles, drawn for each (record, gap, seed) of
+    a batch, whose gaps are (run,) in m.
+    """
+    drawn = [
+        np.random.default_rng([seed, record]).uniform(-IMPERFECTION, IMPERFECTION, (points, 2))
+        for record, _, seed in batch
+    ]
+    return np.stack(drawn, axis=-1) * gaps
 
 
 def _at_step(force, schedule):
