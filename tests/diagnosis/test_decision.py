@@ -72,8 +72,13 @@ def test_no_gain_is_nothing_missing():
 
 
 def test_a_gain_beyond_all_nulls_is_sure_though_bands_differ():
-    uneven = {gain: replace(hypothesis(gain, "gap@all"), error=0.25) for gain in (0.16, 0.32)}
+    uneven = {gain: replace(hypothesis(gain, "gap@all"), error=0.25) for gain in (0.16, 0.38)}
     assert [decided(each).verdict for each in uneven.values()] == ["none", "named"]
+
+
+def test_a_sure_gain_that_nulls_reach_is_none():
+    even = {gain: replace(hypothesis(gain, "gap@all"), error=0.013) for gain in (0.126, 0.25)}
+    assert [decided(each).verdict for each in even.values()] == ["none", "named"]
 
 
 @pytest.mark.parametrize(("before", "verdict"), [(1.2, "none"), (4.6, "unknown"), (None, "none")])

@@ -10,7 +10,7 @@ from vibroimpact.diagnosis import free_runs as module
 from vibroimpact.diagnosis.decision import decide
 from vibroimpact.diagnosis.explanations import Point, Structure, Term
 from vibroimpact.diagnosis.free_runs import free_runs
-from vibroimpact.diagnosis.free_search import free_search
+from vibroimpact.diagnosis.free_search import far, free_search
 from vibroimpact.diagnosis.measurement.usable import Refused
 from vibroimpact.diagnosis.screening import Screened
 from vibroimpact.diagnosis.search import Hypothesis, Search, search
@@ -33,9 +33,9 @@ def played(comparison):
     return played, free_runs(structure, played.signals, None)
 
 
-def searched(*points):
+def searched(*points, nuisances=Point()):
     """A search in which nothing gains, and the points that were screened."""
-    nothing = Hypothesis(SimpleNamespace(point=Point()), 0.0, 0.0, 0.0)
+    nothing = Hypothesis(SimpleNamespace(point=nuisances), 0.0, 0.0, 0.0)
     return Search(nothing, (), screened=tuple(Screened(point, 0.0) for point in points))
 
 
@@ -55,14 +55,31 @@ def test_nothing_is_named_where_no_trial_closes_the_spectra(played):
     comparison, runs = played
     search_of_nothing = searched(TRIED[2])
     none = decide(search_of_nothing, 5.0, 5.0)
-    assert free_search(comparison, search_of_nothing, none, runs) == (none, runs)
+    found, after = free_search(comparison, search_of_nothing, none, runs)
+    assert found == none and after.after is runs.before
 
 
 def test_no_free_trial_is_made_where_spectra_agree(played):
     comparison, runs = played
     agreed = replace(runs, measured=runs.before[:, 0])
     none = decide(searched(*TRIED), 5.0, 5.0)
-    assert free_search(comparison, searched(*TRIED), none, agreed) == (none, agreed)
+    found, after = free_search(comparison, searched(*TRIED), none, agreed)
+    assert found == none and after.after is runs.before
+
+
+def test_nothing_is_sought_where_nuisances_close_spectra(comparison):
+    structure, signals = comparison.structure, comparison.signals
+    louder = Point(gain=(0.5,) * len(signals.names))
+    response = module._simulated(structure, signals, louder)[:, 1]
+    played = replace(comparison, signals=replace(signals, response=response))
+    runs = free_runs(structure, played.signals, None)
+    known = searched(*TRIED, nuisances=louder)
+    none = decide(known, 5.0, 5.0)
+    found, after = free_search(played, known, none, runs)
+    assert far(runs, played.signals) and not far(after, played.signals)
+    assert found == none and (after.before == runs.before).all()
+    unknown = replace(none, verdict="unknown")
+    assert free_search(played, known, unknown, runs)[1].after is runs.before
 
 
 def test_a_model_that_can_not_be_run_is_refused(comparison):

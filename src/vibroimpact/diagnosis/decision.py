@@ -151,8 +151,7 @@ def beside_spectra(
 
     misfit: {before_dB, after_dB, floor_dB, closed_fraction} of held-out records, None if unknown.
     parts: the same of each record and channel: in a record, or across the force, whirling may be
-    chance. surely_off: whether a held-out record is off by more than chance, see
-    free_runs.surely_off.
+    chance. surely_off: whether a record is off by more than chance, see free_runs.surely_off.
     """
     before, after, floor = misfit["before_dB"], misfit["after_dB"], misfit["floor_dB"]
     if before is None or after is None or floor is None:
@@ -218,7 +217,7 @@ def sure_gain(hypothesis: Hypothesis) -> float:
     """Return the least gain of a hypothesis: by two standard errors, or by what a wrong effect
     reaches, if that is less.
     """
-    error = min(2.0 * hypothesis.error, constants.NULL_REACH)
+    error = min(2.0 * hypothesis.error, constants.NULL_GAIN)
     return min(hypothesis.apart - error, hypothesis.gain)
 
 

@@ -38,7 +38,6 @@ from .decision import (
     beside_spectra,
     counted,
     decide,
-    far_off,
     gains,
     refuted,
 )
@@ -46,7 +45,7 @@ from .evidence import evidence_of
 from .explanations import Point, Structure
 from .floor import floor_of
 from .free_runs import FreeRuns, distance, distances, free_runs, regions, surely_off, with_after
-from .free_search import free_search
+from .free_search import far, free_search
 from .identified.identified import PREDICTION, Identified, identified
 from .identified.search import left_and_floor, search_laws
 from .identified.structure_file import model_of
@@ -131,7 +130,7 @@ def run_diagnosis(
         with costs("free runs"):
             runs = free_runs(comparison.structure, comparison.signals, None)
         with costs("search"):
-            comparison, searched = _searched(comparison, runs, EFFORTS[effort], log)
+            comparison, searched, runs = _searched(comparison, runs, EFFORTS[effort], log)
     except Refused as refusal:
         return Diagnosis(_refused(refusal, checks, provenance or {}, costs))
     with costs("floor"):
@@ -160,21 +159,25 @@ def run_diagnosis(
 
 def _searched(
     comparison: Comparison, runs: FreeRuns, most: int, log: Log
-) -> tuple[Comparison, Search]:
-    """Return (the Comparison that shows more, its Search); runs: of the model as given.
+) -> tuple[Comparison, Search, FreeRuns]:
+    """Return (the Comparison that shows more, its Search, FreeRuns); runs: of the model as given.
 
     Some records hold the right model, but not one that lacks much. If nothing gains on the records
-    that hold the given one, and its spectra are far off, the others are compared too.
+    that hold the given one, and its spectra are far off with the fitted nuisances too, the others
+    are compared.
     """
     signals, effects = comparison.signals, _seen_effects(comparison)
     searched = search(comparison, most, effects, log)
-    if comparison.lost and _far(runs, signals) and not gains(searched):
+    if gains(searched) or not far(runs, signals):
+        return comparison, searched, runs
+    runs = with_after(runs, comparison.structure, signals, searched.nothing.point)
+    if comparison.lost and far(runs, signals):
         log("nothing gains on the records that hold the model: the others are compared too")
         wider = comparison.widened()
         again = search(wider, most, effects, log)
         if gains(again):
-            return wider, again
-    return comparison, searched
+            return wider, again, replace(runs, after=runs.before)
+    return comparison, searched, runs
 
 
 def _seen_effects(comparison: Comparison) -> list[Effect]:
@@ -187,11 +190,6 @@ def _level_and_floor(comparison: Comparison, searched: Search) -> tuple[float, f
     """Return the mean log power of the holding force with the best hypothesis, and its floor."""
     best = max(searched.hypotheses, key=lambda each: each.gain, default=searched.nothing)
     return floor_of(comparison, best.fit)
-
-
-def _far(runs: FreeRuns, signals: Signals) -> bool:
-    """Return whether spectra after completion are far off on the fitted records."""
-    return far_off(distance(runs, signals, signals.fit()))
 
 
 def _run_identified(
@@ -349,7 +347,7 @@ def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
         misfits, effects = _misfits(found), []
     elif decision.verdict == "unknown" and found.decision.verdict not in ("none", "unknown"):
         withdrawn = {"effects": effects, "misfit": misfits}
-    checks = [*found.checks_with(decision), *_lost_rows(found), *_free_rows(decision)]
+    checks = [*found.checks_with(decision), *_lost_rows(found), *_free_rows(decision, found.runs)]
     content = {
         **_decided(decision, effects),
         "regions": (
@@ -400,14 +398,14 @@ def _verified(found: _Found, misfits: dict[str, Any]) -> Decision:
 
 
 def _surely_off(found: _Found) -> bool:
-    """Return whether a record that took no part is surely off with the best hypothesis."""
+    """Return whether a record, fitted or not, is surely off with the best hypothesis."""
     if found.comparison is None or found.decision.best is None:
         return False
     if found.decision.verdict not in ("named", "ambiguous"):
         return False
     signals, point = found.signals, found.decision.best.point
-    records = signals.holdout() if len(signals.holdout()) else signals.fit()
-    return bool(surely_off(found.runs, found.comparison.structure, signals, point, records))
+    structure, records = found.comparison.structure, range(len(signals.load))
+    return bool(surely_off(found.runs, structure, signals, point, records))
 
 
 def _misfits(found: _Found) -> dict[str, Any]:
@@ -494,8 +492,17 @@ def _lost_rows(found: _Found) -> list[dict[str, Any]]:
     ]
 
 
-def _free_rows(decision: Decision) -> list[dict[str, Any]]:
-    """Return the row of checks for an effect that only spectra of free runs show."""
+def _free_rows(decision: Decision, runs: FreeRuns) -> list[dict[str, Any]]:
+    """Return the row of checks for an effect that only spectra of free runs show, or for spectra
+    that only the fitted nuisances bring to their floor.
+    """
+    if decision.verdict == "none" and runs.after is not runs.before:
+        sentence = (
+            "The spectra of free runs are off with the model as given, and as measured once its"
+            " frequencies, its damping and the force are changed within their uncertainty: the"
+            " motion is sensitive to them, and no effect is asked for."
+        )
+        return [check_row("sensitive motion", "warn", sentence)]
     if not decision.by_free_runs or decision.verdict in ("none", "unknown"):
         return []
     sentence = (

@@ -48,16 +48,11 @@ class FreeRuns:
 
 def free_runs(structure: Structure, signals: Signals, after: Point | None) -> FreeRuns:
     """Return the FreeRuns of the model as given and of a Point, None if nothing is completed."""
-    given = _simulated(structure, signals, Point())
-    completed = given if after is None else _simulated(structure, signals, after)
-    spectra = [_psd(values, signals) for values in (signals.response[:, None], given, completed)]
-    return FreeRuns(
-        spectra[0][0],
-        spectra[0][1][:, 0],
-        spectra[1][1],
-        spectra[2][1],
-        signals.noise**2 / (0.5 * signals.rate),
-    )
+    frequency, measured = _psd(signals.response[:, None], signals)
+    _, before = _psd(_simulated(structure, signals, Point()), signals)
+    noise = signals.noise**2 / (0.5 * signals.rate)
+    runs = FreeRuns(frequency, measured[:, 0], before, before, noise)
+    return runs if after is None else with_after(runs, structure, signals, after)
 
 
 def with_after(

@@ -24,6 +24,7 @@ from .decision import Decision, conclusion, far_off
 from .explanations import Point
 from .free_runs import FreeRuns, distance, with_after
 from .gauss_newton import Fit
+from .measurement.signals import Signals
 from .search import Hypothesis, Search, changes, jackknife
 
 RUN_FREE, PER_EFFECT = 12, 4  # points, in all and of one effect
@@ -52,14 +53,22 @@ def free_search(
 ) -> tuple[Decision, FreeRuns]:
     """Return (Decision, FreeRuns): the given ones if free runs show nothing more.
 
-    runs: of the model as given. Nothing is sought unless the verdict is none or unknown.
+    runs: of the model as given, and of its fitted nuisances if known. Nothing is sought unless the
+    verdict is none or unknown, nor if the fitted nuisances bring the spectra to their floor:
+    whether a tube whirls can depend on a degree of the force, or on 0.3 % of a frequency.
     """
-    told = distance(runs, comparison.signals, comparison.signals.fit())
-    named = decision.verdict not in ("none", "unknown")
-    if named or told["after_dB"] is None or not far_off(told):
+    if decision.verdict not in ("none", "unknown"):
         return decision, runs
+    signals, given = comparison.signals, replace(runs, after=runs.before)
+    if not far(given, signals):
+        return decision, given
+    if runs.after is runs.before:
+        runs = with_after(runs, comparison.structure, signals, searched.nothing.point)
+    if not far(runs, signals):
+        log("the fitted nuisances bring the spectra of free runs to their floor")
+        return decision, runs if decision.verdict == "none" else given
     records = _farthest(comparison, runs)
-    away = distance(runs, comparison.signals, records)["after_dB"]
+    away = distance(runs, signals, records)["after_dB"]
     trials = _run(comparison, _candidates(searched), runs, records)
     scanned = [point for trial in trials[:SCANNED] for point in _scan(comparison, trial.point)]
     trials = sorted([*trials, *_run(comparison, scanned, runs, records)], key=_away)
@@ -71,7 +80,7 @@ def free_search(
     for trial in list(best.values())[:3]:
         log(f"{trial.point.name}: spectra {away:.1f} dB off without it, {trial.away:.1f} with it")
     if not best:
-        return decision, runs
+        return decision, given
     closed = next(iter(best.values())).closed
     weight = np.exp([(trials[0].away - trial.away) / FREE_RIVAL_DB for trial in best.values()])
     found = [_hypothesis(comparison, searched.nothing, each, trials) for each in best.values()]
@@ -84,8 +93,13 @@ def free_search(
         something_else=1.0 - closed,
         by_free_runs=True,
     )
-    runs = with_after(runs, comparison.structure, comparison.signals, found[0].point)
-    return decision, runs
+    return decision, with_after(runs, comparison.structure, signals, found[0].point)
+
+
+def far(runs: FreeRuns, signals: Signals) -> bool:
+    """Return whether spectra after completion are known, and far off on the fitted records."""
+    told = distance(runs, signals, signals.fit())
+    return told["after_dB"] is not None and far_off(told)
 
 
 def _farthest(comparison: Comparison, runs: FreeRuns) -> list[int]:

@@ -48,14 +48,15 @@ class Fit:
         return np.sqrt(np.diag(np.linalg.pinv(self.information)))
 
 
-def columns(
-    bench: Bench, point: Point, rows: Sequence[Coordinate], lines: np.ndarray
-) -> np.ndarray:
-    """Return (coordinate, stretch, channel, line): derivatives of the lines at a Point by
-    differences; 0 if a run fails. lines: at the Point.
+def linearised(
+    bench: Bench, point: Point, rows: Sequence[Coordinate]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return (lines (stretch, channel, line) at a Point, (coordinate, stretch, channel, line)): the
+    derivatives are differences, 0 if a run fails.
     """
     moved, step = _moved(point, rows)
-    return _derivatives(holding_lines(bench, moved), lines, step)
+    lines, *found = holding_lines(bench, [point, *moved])
+    return lines, _derivatives(np.reshape(found, (len(rows), *lines.shape)), lines, step)
 
 
 def _moved(point, rows):

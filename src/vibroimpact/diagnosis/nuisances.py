@@ -13,10 +13,10 @@ from functools import cached_property
 
 import numpy as np
 
-from .bench import Bench, holding_lines, misfit, whitening
+from .bench import Bench, misfit, whitening
 from .coordinates import Coordinate, bounds, to_vector
 from .explanations import Point
-from .gauss_newton import columns, products
+from .gauss_newton import linearised, products
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,5 +93,4 @@ class Nuisances:
 
 def nuisances_at(bench: Bench, base: Point, rows: Sequence[Coordinate]) -> Nuisances:
     """Return the Nuisances about a Point, whose columns are found by runs."""
-    lines = holding_lines(bench, [base])[0]
-    return Nuisances(bench, base, tuple(rows), lines, columns(bench, base, rows, lines))
+    return Nuisances(bench, base, tuple(rows), *linearised(bench, base, rows))

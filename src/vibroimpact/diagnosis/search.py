@@ -23,7 +23,7 @@ from .bench import (
 )
 from .catalogue import within_priors
 from .comparison import Comparison
-from .constants import NULL_REACH, needed_gain
+from .constants import NULL_GAIN, needed_gain
 from .coordinates import effect_coordinates
 from .explanations import Point, Term
 from .gauss_newton import Fit, fits
@@ -87,7 +87,7 @@ class Hypothesis:
         """Return the gain over another one, less the standard error of their difference apart: of
         two that fit as well, the errors are much alike.
         """
-        error = 0.0 if other.point.terms else min(self.error, NULL_REACH)
+        error = 0.0 if other.point.terms else min(self.error, NULL_GAIN)
         if self.change is not None and other.change is not None and self.lines is not None:
             _, error = jackknife(self.change - other.change, self.lines)
         return min(self.apart - other.apart - error, self.gain - other.gain)

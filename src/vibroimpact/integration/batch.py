@@ -412,10 +412,9 @@ class Run:
     def account(self, recorded: bool) -> None:
         """Add the chunk's tally to the totals, to the sums when recorded, and take the energies."""
         tally = self.tally
-        self.totals["input_work"] += tally.input_work[0]
-        self.totals["contact_work"] += tally.contact_work[0]
-        self.totals["dissipated"] += tally.dissipated[0]
-        self.residual = np.maximum(self.residual, tally.residual[0])
+        for name, total in self.totals.items():
+            total += in_all_lanes(getattr(tally, name)[0])
+        self.residual = np.maximum(self.residual, in_all_lanes(tally.residual[0]))
         self.take_energies()
         if recorded:
             for name, array in tally._asdict().items():

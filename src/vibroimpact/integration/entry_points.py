@@ -1,8 +1,9 @@
-"""The compiled functions that Python calls, for batches of up to LANES runs and for a run alone.
+"""The compiled functions that Python calls, for batches of up to LANES runs, of half as many, and
+for a run alone.
 
 A run alone would leave all lanes but one empty. Its kernels are the same files, imported a second
-time with one lane: their vectors lie along the modes. They add in the same order, so that a run has
-the same bits alone as in a batch.
+time with one lane: their vectors lie along the modes. Those of HALF lanes take half of the memory.
+All add in the same order, so that a run has the same bits alone as in a batch.
 """
 
 import importlib.util
@@ -19,7 +20,7 @@ from . import kernels
 from .kernels import decimation, march
 from .kernels.lanes import LANES
 
-ONE_RUN = f"{kernels.__name__}_of_one_run"
+HALF = LANES // 2
 
 
 @dataclass(frozen=True)
@@ -37,20 +38,21 @@ def lanes_of(cases: int) -> int:
 
 
 def in_all_lanes(values: np.ndarray) -> np.ndarray:
-    """Return values (.., lane), those of a run alone in LANES lanes: numpy and BLAS then sum them
-    in the same order as those of a batch.
+    """Return values (.., lane), those of fewer lanes repeated up to LANES: numpy and BLAS then sum
+    them in the same order as those of a batch.
     """
-    return np.repeat(values, LANES, axis=-1) if values.shape[-1] == 1 else values
+    return np.tile(values, LANES // values.shape[-1])
 
 
 @cache
 def entry_points(lanes: int) -> EntryPoints:
-    """Return the functions for arrays that end in an axis of lanes, LANES or 1."""
+    """Return the functions for arrays that end in an axis of lanes: LANES, HALF or 1."""
     if lanes == LANES:
         return EntryPoints(march.march, march.initial_forces, decimation.decimate)
-    _import_again(kernels, ONE_RUN)
-    alone = [importlib.import_module(f"{ONE_RUN}.{name}") for name in ("march", "decimation")]
-    return EntryPoints(alone[0].march, alone[0].initial_forces, alone[1].decimate)
+    name = f"{kernels.__name__}_of_{lanes}"
+    _import_again(kernels, name)
+    own = [importlib.import_module(f"{name}.{module}") for module in ("march", "decimation")]
+    return EntryPoints(own[0].march, own[0].initial_forces, own[1].decimate)
 
 
 def _import_again(package: ModuleType, name: str) -> None:

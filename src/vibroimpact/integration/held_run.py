@@ -22,6 +22,7 @@ from vibroimpact.reduction.modal_model import ModalModel
 
 from .batch import Run, Schedule, start_amplitudes, start_state
 from .contact_convergence import CONTRACTION_LIMIT, IntegrationError, checked_contraction
+from .entry_points import HALF
 from .kernel_layout import MODE_COEFFICIENTS, ModalLayout, aligned
 from .kernels.lanes import LANES
 from .kernels.tables import Contact, Hold, Laws, Modal, Output, State
@@ -155,7 +156,7 @@ class _Prepared:
         self.rest = lru_cache(maxsize=None)(self._rest)
         self.signature = lru_cache(maxsize=None)(self._signature)
 
-    def _layout(self, model):
+    def _layout(self, model, lanes=LANES):
         """Return the ModalLayout of a model whose sensors are force channels too."""
         held = model.sensor_shapes * (model.omega < self.highest)[:, None]
         laws = model.contact_laws
@@ -163,7 +164,7 @@ class _Prepared:
             laws = laws.with_columns(damping=np.maximum(laws.damping, NO_DAMPING))
         shapes = np.hstack([model.drive_shapes, held])
         driven = replace(model, drive_shapes=shapes, contact_laws=laws)
-        return ModalLayout(driven, self.schedule.scheme)
+        return ModalLayout(driven, self.schedule.scheme, lanes)
 
     def _contraction(self, model):
         return checked_contraction(model, self.schedule.steps_per_second, self.schedule.scheme)
@@ -237,26 +238,25 @@ class _LaneLayout(ModalLayout):
             channel=channels.astype(np.int64),
             row_start=np.cumsum([0, *map(len, rows)]).astype(np.int64),
             row=np.concatenate([*rows, np.zeros(0, np.int64)]).astype(np.int64),
-            gain=np.stack([self._gain(modal, rows, lane) for lane in range(LANES)], axis=-1),
-            measured=np.zeros((self.sensors, LANES)),
-            difference=np.zeros((self.sensors, LANES)),
-            memory=np.zeros((self.sensors, LANES)),
-            rate=np.zeros((self.sensors, LANES)),
+            gain=np.stack([self._gain(modal, rows, lane) for lane in range(self.lanes)], axis=-1),
+            measured=np.zeros((self.sensors, self.lanes)),
+            difference=np.zeros((self.sensors, self.lanes)),
+            memory=np.zeros((self.sensors, self.lanes)),
+            rate=np.zeros((self.sensors, self.lanes)),
         )
 
     def _gain(self, modal, rows, lane):
         """Return (sensor, sensor) N s/m: the dampers as the implicit step takes them."""
         compliance = np.zeros((self.sensors, self.sensors))
-        own = self.layouts[lane].modal(modal.dt) if not self.alike else modal
+        own = self.layouts[lane].modal(modal.dt)
         for g in range(modal.row_start.size - 1):
             row0, row1 = modal.row_start[g], modal.row_start[g + 1]
             start, count = modal.compliance_start[g], row1 - row0
             block = own.row_compliance[start : start + count**2].reshape(count, count)
-            for a, first in enumerate(rows):
-                for b, second in enumerate(rows):
-                    for r in first[(first >= row0) & (first < row1)] - row0:
-                        for s in second[(second >= row0) & (second < row1)] - row0:
-                            compliance[a, b] += block[r, s]
+            of_sensor = np.zeros((self.sensors, count))
+            for sensor, its in enumerate(rows):
+                of_sensor[sensor, its[(its >= row0) & (its < row1)] - row0] = 1.0
+            compliance += of_sensor @ block @ of_sensor.T
         c = self.strength[:, lane]
         return np.linalg.solve(
             np.eye(self.sensors) + modal.velocity_weights[0] * c[:, None] * compliance, np.diag(c)
@@ -306,9 +306,10 @@ class HeldRun(Run):
 
     def __init__(self, runs: Sequence[HeldLane], prepared: _Prepared):
         schedule, self.runs = prepared.schedule, runs
-        lanes = [*runs, *[runs[0]] * (LANES - len(runs))]
+        count = HALF if len(runs) <= HALF else LANES
+        lanes = [*runs, *[runs[0]] * (count - len(runs))]
         self.places = [prepared.rest(run.model, run.gap) for run in lanes]
-        self.layouts = [prepared.layout(run.model) for run in lanes]
+        self.layouts = [prepared.layout(run.model, count) for run in lanes]
         layout = _LaneLayout(
             self.layouts,
             np.stack([run.strength for run in lanes], axis=-1),
@@ -325,9 +326,9 @@ class HeldRun(Run):
         )
 
     def _drive(self, first, count):
-        """Return (step, force channel, LANES): forces, measured motion, and 1 of the dead load."""
+        """Return (step, force channel, lane): forces, measured motion, and 1 of the dead load."""
         own, total = self.model.drive_shapes.shape[1], self.layout.drive_shapes.shape[1]
-        out = np.zeros((count, total, LANES))
+        out = np.zeros((count, total, self.lanes))
         for lane, run in enumerate(self.runs):
             forces = run.force.shape[1]
             out[:, :forces, lane] = run.force_scale * run.force[first : first + count]
@@ -342,8 +343,8 @@ class HeldRun(Run):
             if rest is not None:
                 own = self.layouts[lane]
                 state, amplitudes = own.state(), np.outer(rest, np.ones(LANES))
-                still = np.zeros((own.drive_shapes.shape[1], LANES))
-                fluid = own.fluid(own.modal(self.dt), LANES)
+                still = np.zeros((own.drive_shapes.shape[1], self.lanes))
+                fluid = own.fluid(own.modal(self.dt), self.lanes)
                 start_state(
                     *(own, own.modal(self.dt), self.contact, self.laws, fluid),
                     *(state, own.work(), still),

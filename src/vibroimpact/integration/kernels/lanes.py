@@ -21,8 +21,10 @@ from numba.extending import intrinsic, lower_builtin, models, register_model
 
 from .compiled import inlined
 
-# integration.entry_points imports this folder a second time, under a name that ends in one_run.
-LANES = 1 if __package__.endswith("one_run") else 8
+# integration.entry_points imports this folder again, under names that end in another number.
+MOST_LANES = 8
+_number = __package__.rpartition("_of_")[2]
+LANES = int(_number) if _number.isdigit() else MOST_LANES
 
 DOUBLE = ir.DoubleType()
 INT32 = ir.IntType(32)
