@@ -41,7 +41,7 @@ def in_all_lanes(values: np.ndarray) -> np.ndarray:
     """Return values (.., lane), those of fewer lanes repeated up to LANES: numpy and BLAS then sum
     them in the same order as those of a batch.
     """
-    return np.tile(values, LANES // values.shape[-1])
+    return np.tile(values, max(LANES // values.shape[-1], 1))
 
 
 @cache
