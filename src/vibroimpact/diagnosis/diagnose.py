@@ -347,7 +347,7 @@ def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
         misfits, effects = _misfits(found), []
     elif decision.verdict == "unknown" and found.decision.verdict not in ("none", "unknown"):
         withdrawn = {"effects": effects, "misfit": misfits}
-    checks = [*found.checks_with(decision), *_lost_rows(found), *_free_rows(decision, found.runs)]
+    checks = [*found.checks_with(decision), *_lost_rows(found), *_free_rows(decision, found)]
     content = {
         **_decided(decision, effects),
         "regions": (
@@ -492,11 +492,12 @@ def _lost_rows(found: _Found) -> list[dict[str, Any]]:
     ]
 
 
-def _free_rows(decision: Decision, runs: FreeRuns) -> list[dict[str, Any]]:
+def _free_rows(decision: Decision, found: _Found) -> list[dict[str, Any]]:
     """Return the row of checks for an effect that only spectra of free runs show, or for spectra
     that only the fitted nuisances bring to their floor.
     """
-    if decision.verdict == "none" and runs.after is not runs.before:
+    moved = found.comparison is not None and found.runs.after is not found.runs.before
+    if decision.verdict == "none" and moved:
         sentence = (
             "The spectra of free runs are off with the model as given, and as measured once its"
             " frequencies, its damping and the force are changed within their uncertainty: the"

@@ -69,7 +69,8 @@ def checks_of_completed(
     if not any(row.get(AGAINST_MODEL) for row in checks):
         return list(checks)
     whole, _ = checked_campaign(campaign)
-    rows = [] if whole is None else _against_model(completed, whole)
+    others = [row for row in checks if row["level"] == "warn" and not row.get(AGAINST_MODEL)]
+    rows = _against_model(completed, _left(whole, others))
     still = {row["channel"] for row in rows if row.get(AGAINST_MODEL)}
     return [
         (
