@@ -50,7 +50,7 @@ def test_a_second_effect_is_sought_with_other_firsts_too():
     )
     found = Search(hypothesis(0.0), (pair, *singles))
     assert found.other_firsts == [*singles[:2]]
-    assert replace(found, bases=("nothing", "gap@all")).other_firsts == [singles[1]]
+    assert replace(found, screened={"nothing": (), "gap@all": ()}).other_firsts == [singles[1]]
     weak = (hypothesis(0.04, "gap@all"), hypothesis(0.03, "gap@left"))
     assert Search(weak[0], weak).other_firsts == []
 
@@ -111,11 +111,12 @@ def test_a_part_that_whirls_by_chance_refutes_nothing():
 
 def test_an_effect_beside_which_records_stay_off_is_a_part():
     named = decided(hypothesis(8.0, "contact_damping@all"))
-    found = beside_spectra(named, misfit(11.8, 10.0), [misfit(11.8, 10.0), misfit(9.0, 1.2)], True)
+    off = replace(named, surely_off=True)
+    found = beside_spectra(off, misfit(11.8, 10.0), [misfit(11.8, 10.0), misfit(9.0, 1.2)])
     assert found.verdict == "partly_explained" and found.best.ids == ("contact_damping",)
     total = found.nothing + found.something_else + sum(chance for _, chance in found.ranked)
-    assert found.something_else > 0.9 and total == pytest.approx(1.0, abs=0.02)
-    assert beside_spectra(decided(), misfit(1.2, 1.2), surely_off=True).verdict == "none"
+    assert found.something_else > 0.5 and total == pytest.approx(1.0, abs=0.02)
+    assert beside_spectra(replace(decided(), surely_off=True), misfit(1.2, 1.2)).verdict == "none"
 
 
 def test_an_effect_that_spoils_spectra_without_excess_is_nothing():

@@ -3,14 +3,17 @@
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from vibroimpact.config.reading import check_config
 from vibroimpact.diagnosis import free_runs as module
+from vibroimpact.diagnosis.coordinates import effect_coordinates
 from vibroimpact.diagnosis.decision import decide
 from vibroimpact.diagnosis.explanations import Point, Structure, Term
 from vibroimpact.diagnosis.free_runs import free_runs
 from vibroimpact.diagnosis.free_search import far, free_search
+from vibroimpact.diagnosis.gauss_newton import Fit
 from vibroimpact.diagnosis.measurement.usable import Refused
 from vibroimpact.diagnosis.screening import Screened
 from vibroimpact.diagnosis.search import Hypothesis, Search, search
@@ -36,7 +39,7 @@ def played(comparison):
 def searched(*points, nuisances=Point()):
     """A search in which nothing gains, and the points that were screened."""
     nothing = Hypothesis(SimpleNamespace(point=nuisances), 0.0, 0.0, 0.0)
-    return Search(nothing, (), screened=tuple(Screened(point, 0.0) for point in points))
+    return Search(nothing, (), screened={"nothing": tuple(Screened(p, 0.0) for p in points)})
 
 
 def test_what_closes_the_spectra_of_free_runs_is_named(played):
@@ -49,6 +52,22 @@ def test_what_closes_the_spectra_of_free_runs_is_named(played):
     assert (after.after != runs.after).any() and (after.before == runs.before).all()
     fit = found.best.fit
     assert abs(fit.rows[0].from_value(60.0) - fit.x[0]) < 1.645 * fit.deviation[0]
+
+
+def test_free_runs_add_an_effect_to_one_that_leaves_spectra_off(played):
+    """The first effect, a gap as it is, is what the holding force shows."""
+    comparison, runs = played
+    rows = effect_coordinates((gap := Term("gap", "all", (1.0,)),), comparison.sizes)
+    fit = Fit(Point((gap,)), tuple(rows), np.zeros(1), np.zeros(1), 0.0, np.eye(1))
+    base = Hypothesis(fit, 1.0, 1.0, 0.01)
+    known = replace(searched(*TRIED), hypotheses=(base,))
+    named = replace(decide(known, 5.0, 5.0), surely_off=True)
+    runs = replace(runs, after=runs.before.copy())
+    found, _ = free_search(comparison, known, named, runs)
+    assert named.best.ids == ("gap",) and found.verdict == "named"
+    assert found.best.point.ids == ["gap", "quadratic_drag"] and not found.surely_off
+    near = replace(named, surely_off=False)
+    assert free_search(comparison, known, near, runs) == (near, runs)
 
 
 def test_nothing_is_named_where_no_trial_closes_the_spectra(played):
@@ -68,18 +87,18 @@ def test_no_free_trial_is_made_where_spectra_agree(played):
 
 
 def test_nothing_is_sought_where_nuisances_close_spectra(comparison):
+    """The mean of free runs is measured: whether a single one whirls is chance."""
     structure, signals = comparison.structure, comparison.signals
-    louder = Point(gain=(0.5,) * len(signals.names))
-    response = module._simulated(structure, signals, louder)[:, 1]
-    played = replace(comparison, signals=replace(signals, response=response))
-    runs = free_runs(structure, played.signals, None)
+    louder = Point(gain=(2.0,) * len(signals.names))
+    given = free_runs(structure, signals, louder)
+    runs = replace(given, measured=given.after.mean(axis=1), after=given.before)
     known = searched(*TRIED, nuisances=louder)
     none = decide(known, 5.0, 5.0)
-    found, after = free_search(played, known, none, runs)
-    assert far(runs, played.signals) and not far(after, played.signals)
+    found, after = free_search(comparison, known, none, runs)
+    assert far(runs, signals) and not far(after, signals)
     assert found == none and (after.before == runs.before).all()
     unknown = replace(none, verdict="unknown")
-    assert free_search(played, known, unknown, runs)[1].after is runs.before
+    assert free_search(comparison, known, unknown, runs)[1].after is runs.before
 
 
 def test_a_model_that_can_not_be_run_is_refused(comparison):

@@ -1,5 +1,7 @@
 """The values that the screening tries."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -71,3 +73,12 @@ def test_terms_half_way_to_the_next(term, expected):
     assert [place for place, _ in found] == [place for place, _ in expected]
     for (_, own), (_, wanted) in zip(found, expected, strict=True):
         assert own == pytest.approx(wanted, abs=1e-3)
+
+
+def test_a_mode_above_the_lines_is_not_named(comparison):
+    model = comparison.structure.with_terms(())
+    inside = [int(name.removeprefix("mode_")) - 1 for name in comparison.resonant]
+    assert inside and model.frequencies[inside].max() < comparison.band[1]
+    low = replace(comparison, signals=comparison.signals)
+    object.__setattr__(low, "band", (comparison.band[0], 1.2 * model.frequencies[0]))
+    assert low.resonant == {"mode_1"}

@@ -72,6 +72,15 @@ class Comparison:
         model = self.structure.with_terms(())
         return np.flatnonzero(seen(model) & (model.frequencies < self.band[1]))
 
+    @property
+    def resonant(self) -> frozenset[str]:
+        """Return the names of the modes whose resonance is within the lines. A mode above these
+        adds flexibility alone: its frequency would stand for any flexibility that is missing.
+        """
+        model = self.structure.with_terms(())
+        inside = model.frequencies[self._seen] < INSIDE[1] * self.band[1]
+        return frozenset(f"mode_{number + 1}" for number in self._seen[inside])
+
     def nuisances(self) -> list[Coordinate]:
         """Return the coordinates of the nuisances: of the modes in the band, of all channels and,
         if motion across the force is seen, of its direction.

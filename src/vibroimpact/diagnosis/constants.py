@@ -39,6 +39,10 @@ REST, REST_WIDTH = 1.7, 0.25  # log power over the floor: something else is as l
 # Excess in dB of the spectra of free runs over their floor, with which something is missing, even
 # if the holding force shows nothing. A completed model that leaves twice as much is refuted.
 FREE_EXCESS_DB = 1.5
+LEFT_SHARE = 0.2  # of an excess that a right explanation may leave: laws of two codes differ
+# Of the best explanations beside which a record is off by more than that and chance, the share that
+# is right.
+RIGHT_BESIDE = 0.2
 FREE_RIVAL_DB = 1.0  # difference of rivals by free runs that counts e-fold
 NAMED = 0.8  # probability from which an explanation is named
 PARTLY = 0.5  # share of the excess over the floor, from which a part is explained

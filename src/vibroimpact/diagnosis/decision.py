@@ -7,7 +7,7 @@ floor with the best hypothesis.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from operator import attrgetter
 from typing import Any
@@ -19,7 +19,6 @@ from vibroimpact.diagnosis.verdict.content import Conclusion
 from vibroimpact.diagnosis.verdict.misfit import makes_worse
 
 from . import constants
-from .free_runs import CHANCE_RUNS
 from .search import Hypothesis, Search
 
 EXACT_ALIASES = {  # effects that no measurement of this kind can separate
@@ -39,7 +38,8 @@ class Decision:
     nothing, something_else: probabilities. best: the most probable hypothesis, None if there is
     none. rest: log power over the floor that the best leaves. share: of the log power over the
     floor, that the best explains. by_free_runs: whether only spectra of free runs show it, see
-    free_search.
+    free_search. surely_off: whether the spectra of a record are off with the best by more than
+    chance, see free_runs.surely_off.
     """
 
     verdict: Conclusion
@@ -49,6 +49,7 @@ class Decision:
     rest: float
     share: float
     by_free_runs: bool = False
+    surely_off: bool = False
 
     @property
     def best(self) -> Hypothesis | None:
@@ -66,15 +67,21 @@ class Decision:
         return out
 
 
-def decide(search: Search, level: float, floor: float) -> Decision:
+def decide(
+    search: Search,
+    level: float,
+    floor: float,
+    needed: Callable[[float], float] = constants.needed_gain,
+) -> Decision:
     """Return the Decision on a Search.
 
     level: mean log power of the holding force with the best hypothesis. floor: the same of a model
-    that lacks nothing else, NaN if unknown.
+    that lacks nothing else, NaN if unknown. needed: the gain that one more effect must bring, given
+    the gain without it.
     """
     distinct: dict[tuple[str, ...], Hypothesis] = {}
     for each in sorted(search.hypotheses, key=attrgetter("worth"), reverse=True):
-        if not _superfluous(each, search.hypotheses):
+        if not _superfluous(each, search.hypotheses, needed):
             distinct.setdefault(each.ids, each)
     hypotheses = list(distinct.values())[:SHOWN]
     best = hypotheses[0].worth if hypotheses else 0.0
@@ -140,7 +147,6 @@ def beside_spectra(
     decision: Decision,
     misfit: Mapping[str, float | None],
     parts: Sequence[Mapping[str, float | None]] = (),
-    surely_off: bool = False,
 ) -> Decision:
     """Return the Decision given the distances of free runs.
 
@@ -151,7 +157,7 @@ def beside_spectra(
 
     misfit: {before_dB, after_dB, floor_dB, closed_fraction} of held-out records, None if unknown.
     parts: the same of each record and channel: in a record, or across the force, whirling may be
-    chance. surely_off: whether a record is off by more than chance, see free_runs.surely_off.
+    chance.
     """
     before, after, floor = misfit["before_dB"], misfit["after_dB"], misfit["floor_dB"]
     if before is None or after is None or floor is None:
@@ -172,12 +178,14 @@ def beside_spectra(
     far = far and _most_stay_off(parts or [misfit])
     if decision.verdict == "partly_explained":
         return decision
-    return refuted(decision) if far else _in_part(decision) if surely_off else decision
+    return refuted(decision) if far else _in_part(decision) if decision.surely_off else decision
 
 
 def _in_part(decision: Decision) -> Decision:
-    """Return the Decision whose hypotheses explain the discrepancy in part, unless by chance."""
-    ranked = tuple((each, chance / (1 + CHANCE_RUNS)) for each, chance in decision.ranked)
+    """Return the Decision whose hypotheses explain the discrepancy in part, or in full by another
+    law.
+    """
+    ranked = tuple((each, constants.RIGHT_BESIDE * chance) for each, chance in decision.ranked)
     moved = sum(chance for _, chance in decision.ranked) - sum(chance for _, chance in ranked)
     return replace(
         decision,
@@ -221,12 +229,14 @@ def sure_gain(hypothesis: Hypothesis) -> float:
     return min(hypothesis.apart - error, hypothesis.gain)
 
 
-def _superfluous(hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:
+def _superfluous(
+    hypothesis: Hypothesis, others: Sequence[Hypothesis], needed: Callable[[float], float]
+) -> bool:
     """Return whether some effects of a hypothesis alone gain about as much."""
     own = {term.effect_id for term in hypothesis.point.terms}
     return any(
         {term.effect_id for term in other.point.terms} < own
-        and hypothesis.sure_gain_over(other) < constants.needed_gain(other.worth)
+        and hypothesis.sure_gain_over(other) < needed(other.worth)
         for other in others
     )
 

@@ -31,7 +31,7 @@ from vibroimpact.io.records import write_record, write_table, write_text
 
 from .comparison import Comparison
 from .completed import completed_model, effect_rows
-from .constants import LEFT
+from .constants import LEAST_GAIN, LEFT
 from .decision import (
     Decision,
     ambiguity,
@@ -142,11 +142,8 @@ def run_diagnosis(
             searched = search_from(comparison, searched, first, _seen_effects(comparison), log)
         with costs("floor"):
             level, floor = _level_and_floor(comparison, searched)
-    decision = decide(searched, level, floor)
     with costs("free runs"):
-        if decision.verdict not in ("none", "unknown") and decision.best is not None:
-            point = decision.best.point
-            runs = with_after(runs, comparison.structure, comparison.signals, point)
+        decision, runs = _run_free(comparison, searched, (level, floor), runs, log)
         decision, runs = free_search(comparison, searched, decision, runs, log)
     return _concluded(
         _Found(
@@ -190,6 +187,43 @@ def _level_and_floor(comparison: Comparison, searched: Search) -> tuple[float, f
     """Return the mean log power of the holding force with the best hypothesis, and its floor."""
     best = max(searched.hypotheses, key=lambda each: each.gain, default=searched.nothing)
     return floor_of(comparison, best.fit)
+
+
+def _run_free(
+    comparison: Comparison,
+    searched: Search,
+    levels: tuple[float, float],
+    runs: FreeRuns,
+    log: Log,
+) -> tuple[Decision, FreeRuns]:
+    """Return (Decision on a Search, FreeRuns with its best hypothesis).
+
+    If spectra are surely off with the best hypothesis, an effect is missing: then it may gain
+    little, if it brings them as near as chance allows.
+    """
+    decision = decide(searched, *levels)
+    if decision.verdict in ("none", "unknown") or decision.best is None:
+        return decision, runs
+    runs, off = _with_best(comparison, decision, runs)
+    if not off:
+        return decision, runs
+    wider = decide(searched, *levels, needed=lambda gained: LEAST_GAIN)
+    if wider.best is not None and set(wider.best.ids) > set(decision.best.ids):
+        closer, off = _with_best(comparison, wider, runs)
+        log(f"{wider.best.point.name}: {'off' if off else 'near'}, and off without the last effect")
+        if not off:
+            return wider, closer
+    return replace(decision, surely_off=decision.verdict != "partly_explained"), runs
+
+
+def _with_best(
+    comparison: Comparison, decision: Decision, runs: FreeRuns
+) -> tuple[FreeRuns, list[int]]:
+    """Return (FreeRuns with the best hypothesis, the records that are surely off with it)."""
+    assert decision.best is not None
+    signals, structure, point = comparison.signals, comparison.structure, decision.best.point
+    runs = with_after(runs, structure, signals, point)
+    return runs, surely_off(runs, structure, signals, point, range(len(signals.load)))
 
 
 def _run_identified(
@@ -391,21 +425,9 @@ def _verified(found: _Found, misfits: dict[str, Any]) -> Decision:
     """Return the Decision given the distances of free runs; misfits: of the splits."""
     told = counted(found.decision, misfits)
     if found.comparison is not None:
-        rows = distances(found.runs, found.signals)
-        return beside_spectra(found.decision, told, rows, _surely_off(found))
+        return beside_spectra(found.decision, told, distances(found.runs, found.signals))
     worse = found.decision.verdict not in ("none", "unknown") and makes_worse(told)
     return refuted(found.decision) if worse else found.decision
-
-
-def _surely_off(found: _Found) -> bool:
-    """Return whether a record, fitted or not, is surely off with the best hypothesis."""
-    if found.comparison is None or found.decision.best is None:
-        return False
-    if found.decision.verdict not in ("named", "ambiguous"):
-        return False
-    signals, point = found.signals, found.decision.best.point
-    structure, records = found.comparison.structure, range(len(signals.load))
-    return bool(surely_off(found.runs, structure, signals, point, records))
 
 
 def _misfits(found: _Found) -> dict[str, Any]:

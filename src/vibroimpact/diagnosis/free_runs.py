@@ -16,7 +16,7 @@ import numpy as np
 from vibroimpact.diagnosis.verdict.misfit import closed_fraction
 from vibroimpact.integration.contact_convergence import IntegrationError
 
-from .constants import FREE_EXCESS_DB
+from .constants import FREE_EXCESS_DB, LEFT_SHARE
 from .explanations import Point, Structure
 from .measurement.signals import Signals
 from .measurement.simulated_records import simulate_records
@@ -75,19 +75,22 @@ def surely_off(
     records: Sequence[int] | np.ndarray,
 ) -> list[int]:
     """Return which of some records are farther from the model after completion than its own runs
-    are from one another, the farthest first; after: its Point.
+    are from one another, the farthest first; after: its Point. It may leave FREE_EXCESS_DB, and
+    LEFT_SHARE of what the model as given leaves: laws of two codes differ.
 
     Whether a tube whirls may be chance. A record that is off some runs is compared with
     CHANCE_RUNS of them: if the model whirls with any probability, and the measurement does not (or
     the reverse), all of them differ from it in 2 % of the records at most.
     """
-    beyond = _beyond_chance(runs, signals)
-    off = [int(record) for record in records if beyond[record] > FREE_EXCESS_DB]
+    given = _beyond_chance(replace(runs, after=runs.before), signals)
+    most = FREE_EXCESS_DB + LEFT_SHARE * np.maximum(given, 0.0)
+    beyond = _beyond_chance(runs, signals) - most
+    off = [int(record) for record in records if beyond[record] > 0.0]
     if off:
         more = _simulated(structure, signals, after, off, range(SEEDS, CHANCE_RUNS))
         many = np.concatenate([runs.after, _psd(more, signals)[1]], axis=1)
-        beyond = _beyond_chance(replace(runs, after=many), signals)
-    off = [record for record in off if beyond[record] > FREE_EXCESS_DB]
+        beyond = _beyond_chance(replace(runs, after=many), signals) - most
+    off = [record for record in off if beyond[record] > 0.0]
     return sorted(off, key=lambda record: -beyond[record])
 
 

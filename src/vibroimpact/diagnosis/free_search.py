@@ -2,32 +2,35 @@
 
 Friction keeps a tube from whirling; held to a motion that does not whirl, a model without friction
 does not whirl either, and the holding force shows nothing. If the spectra of free runs stay far
-above their floor, the best points of the screening run free as well. This compares statistics of
-chaotic motion: it finds a place, but hardly a value.
+above their floor, effects that the holding force does not contradict run free as well, in addition
+to the best hypothesis. This compares statistics of chaotic motion: it finds a place, but hardly a
+value.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import zip_longest
 
 import numpy as np
 
 from vibroimpact.diagnosis.verdict.misfit import excess
 
 from .bench import effective_lines, holding_lines, misfit
+from .catalogue import far_terms
 from .comparison import Comparison
 from .completed import NINETY_SD
 from .constants import FREE_RIVAL_DB, LEAST_GAIN, PARTLY
 from .coordinates import Coordinate, effect_coordinates, to_point, to_vector
 from .decision import Decision, conclusion, far_off
-from .explanations import Point
+from .explanations import Point, Term
 from .free_runs import FreeRuns, distance, with_after
 from .gauss_newton import Fit
 from .measurement.signals import Signals
 from .search import Hypothesis, Search, changes, jackknife
 
-RUN_FREE, PER_EFFECT = 12, 4  # points, in all and of one effect
+RUN_FREE, PER_EFFECT = 30, 4  # points, in all and of one effect
 SCANNED = 2  # of them, whose first value is changed by FACTORS
 RECORDS = 2  # those whose spectra are farthest off
 FACTORS = (0.1, 0.3, 3.0, 10.0)
@@ -35,13 +38,15 @@ FACTORS = (0.1, 0.3, 3.0, 10.0)
 
 @dataclass(frozen=True, eq=False)
 class _Trial:
-    """A Point that ran free: the distance of its spectra from the measured ones in dB, and the
-    share that its last term closes.
+    """A Point that ran free: the distance of its spectra from the measured ones in dB, the share
+    that its last term closes, and the half width of the interval of the first value of that term,
+    as a coordinate, NaN if not known.
     """
 
     point: Point
     away: float
     closed: float
+    reach: float = np.nan
 
 
 def free_search(
@@ -53,37 +58,30 @@ def free_search(
 ) -> tuple[Decision, FreeRuns]:
     """Return (Decision, FreeRuns): the given ones if free runs show nothing more.
 
-    runs: of the model as given, and of its fitted nuisances if known. Nothing is sought unless the
-    verdict is none or unknown, nor if the fitted nuisances bring the spectra to their floor:
-    whether a tube whirls can depend on a degree of the force, or on 0.3 % of a frequency.
+    runs: of the model as given, and of the best hypothesis or of the fitted nuisances of nothing
+    if known. One more effect is sought in addition to the best hypothesis, if spectra are surely
+    off with it. If there is none, it is sought in addition to nothing, unless the fitted nuisances
+    bring the spectra to their floor: whether a tube whirls can depend on a degree of the direction
+    of the force, or on 0.3 % of a frequency.
     """
-    if decision.verdict not in ("none", "unknown"):
-        return decision, runs
     signals, given = comparison.signals, replace(runs, after=runs.before)
-    if not far(given, signals):
+    nothing = decision.verdict in ("none", "unknown") or decision.best is None
+    if nothing and not far(given, signals):
         return decision, given
-    if runs.after is runs.before:
+    if nothing and runs.after is runs.before:
         runs = with_after(runs, comparison.structure, signals, searched.nothing.point)
-    if not far(runs, signals):
+    if nothing and not far(runs, signals):
         log("the fitted nuisances bring the spectra of free runs to their floor")
         return decision, runs if decision.verdict == "none" else given
-    records = _farthest(comparison, runs)
-    away = distance(runs, signals, records)["after_dB"]
-    trials = _run(comparison, _candidates(searched), runs, records)
-    scanned = [point for trial in trials[:SCANNED] for point in _scan(comparison, trial.point)]
-    trials = sorted([*trials, *_run(comparison, scanned, runs, records)], key=_away)
-    trials = _not_contradicted(comparison, searched, trials)
-    best: dict[tuple[str, ...], _Trial] = {}
-    for trial in trials:
-        if trial.closed >= PARTLY:
-            best.setdefault(tuple(trial.point.ids), trial)
-    for trial in list(best.values())[:3]:
-        log(f"{trial.point.name}: spectra {away:.1f} dB off without it, {trial.away:.1f} with it")
+    if not nothing and not (decision.surely_off and far(runs, signals)):
+        return decision, runs
+    base, chance = (searched.nothing, 1.0) if nothing else decision.ranked[0]
+    best = _closest(comparison, searched, base, runs, log)
     if not best:
-        return decision, given
-    closed = next(iter(best.values())).closed
-    weight = np.exp([(trials[0].away - trial.away) / FREE_RIVAL_DB for trial in best.values()])
-    found = [_hypothesis(comparison, searched.nothing, each, trials) for each in best.values()]
+        return decision, given if nothing else runs
+    closed = chance * best[0].closed
+    weight = np.exp([(best[0].away - trial.away) / FREE_RIVAL_DB for trial in best])
+    found = [_hypothesis(comparison, searched.nothing, base, each) for each in best]
     ranked = tuple(zip(found, map(float, closed * weight / weight.sum()), strict=True))
     decision = replace(
         decision,
@@ -92,8 +90,34 @@ def free_search(
         nothing=0.0,
         something_else=1.0 - closed,
         by_free_runs=True,
+        surely_off=False,
     )
     return decision, with_after(runs, comparison.structure, signals, found[0].point)
+
+
+def _closest(
+    comparison: Comparison,
+    searched: Search,
+    base: Hypothesis,
+    runs: FreeRuns,
+    log: Callable[[str], None],
+) -> list[_Trial]:
+    """Return the trials, one of each set of effects, that bring the spectra of free runs with a
+    base near the measured ones, the nearest first; runs: with the base.
+    """
+    records = _farthest(comparison, runs)
+    away = distance(runs, comparison.signals, records)["after_dB"]
+    trials = _run(comparison, _candidates(comparison, searched, base), runs, records)
+    scanned = [point for trial in trials[:SCANNED] for point in _scan(comparison, trial.point)]
+    trials = sorted([*trials, *_run(comparison, scanned, runs, records)], key=_away)
+    trials = _not_contradicted(comparison, base, trials)
+    best: dict[tuple[str, ...], _Trial] = {}
+    for trial in trials:
+        if trial.closed >= PARTLY:
+            best.setdefault(tuple(trial.point.ids), trial)
+    for trial in list(best.values())[:3]:
+        log(f"{trial.point.name}: spectra {away:.1f} dB off without it, {trial.away:.1f} with it")
+    return [replace(trial, reach=_reach(comparison, trial, trials)) for trial in best.values()]
 
 
 def far(runs: FreeRuns, signals: Signals) -> bool:
@@ -112,19 +136,36 @@ def _farthest(comparison: Comparison, runs: FreeRuns) -> list[int]:
     return sorted(beyond, key=lambda record: -beyond[record])[:RECORDS]
 
 
-def _candidates(searched: Search) -> list[Point]:
-    """Return the points that were fitted, and those that screening found best, with the nuisances
-    of nothing.
+def _candidates(comparison: Comparison, searched: Search, base: Hypothesis) -> list[Point]:
+    """Return points with one term more than a base that the holding force does not contradict: as
+    they were fitted, and of each effect in turn the best ones of the screening, far from neutral
+    ones first. An effect that the holding force does not show is strong, if it is there.
     """
-    chosen = {each.point.name: each.point for each in searched.hypotheses}
-    per_effect: dict[str, int] = {}
-    for each in searched.screened:
-        name, effect = each.point.name, each.point.terms[-1].effect_id
-        if name in chosen or per_effect.get(effect, 0) >= PER_EFFECT or not np.isfinite(each.gain):
-            continue
-        per_effect[effect] = per_effect.get(effect, 0) + 1
-        chosen[name] = searched.nothing.point.beside(each.point.terms[-1])
+    known, sizes = set(base.point.terms), comparison.sizes
+    chosen = {
+        each.point.name: each.point
+        for each in searched.hypotheses
+        if len(each.point.terms) > len(known) and {*base.ids} <= {*each.ids}
+    }
+    bench, names = comparison.screened(), {term.effect_id for term in known}
+    [lines] = holding_lines(bench, [base.point])
+    least = -LEAST_GAIN * effective_lines(bench, lines)
+    screened = searched.screened.get(base.point.name, ())
+    queues: dict[str, list[Term]] = {}
+    for each in screened or searched.screened.get(searched.nothing.point.name, ()):
+        term = each.point.terms[-1]
+        if each.gain > least and term.effect_id not in names:
+            queues.setdefault(term.effect_id, []).append(term)
+    ordered = [sorted(own, key=lambda term: not _is_far(term, sizes)) for own in queues.values()]
+    for turn in zip_longest(*(own[:PER_EFFECT] for own in ordered)):
+        for point in (base.point.beside(term) for term in turn if term is not None):
+            chosen.setdefault(f"{point.name} {point.terms[-1].values}", point)
     return list(chosen.values())[:RUN_FREE]
+
+
+def _is_far(term: Term, sizes: Mapping[str, float]) -> bool:
+    """Return whether a term is a trial far from doing nothing."""
+    return term in far_terms(term.effect, term.location, sizes)
 
 
 def _run(
@@ -145,11 +186,11 @@ def _run(
 
 
 def _not_contradicted(
-    comparison: Comparison, searched: Search, trials: Sequence[_Trial]
+    comparison: Comparison, base: Hypothesis, trials: Sequence[_Trial]
 ) -> list[_Trial]:
-    """Return the trials with which the holding force is no larger than without."""
+    """Return the trials with which the holding force is no larger than with their base."""
     bench = comparison.fitted()
-    before, *after = holding_lines(bench, [searched.nothing.point, *(t.point for t in trials)])
+    before, *after = holding_lines(bench, [base.point, *(t.point for t in trials)])
     highest = misfit(bench, before) + LEAST_GAIN * effective_lines(bench, before)
     return [t for t, own in zip(trials, after, strict=True) if misfit(bench, own) < highest]
 
@@ -182,13 +223,18 @@ def _scan(comparison: Comparison, point: Point) -> list[Point]:
 
 
 def _hypothesis(
-    comparison: Comparison, nothing: Hypothesis, own: _Trial, trials: Sequence[_Trial]
+    comparison: Comparison, nothing: Hypothesis, base: Hypothesis, own: _Trial
 ) -> Hypothesis:
-    """Return the Hypothesis of a trial, compared with nothing."""
+    """Return the Hypothesis of a trial in addition to a base, compared with nothing."""
     rows = effect_coordinates(own.point.terms, comparison.sizes)
     x, at = to_vector(own.point, rows), _first_value(own.point, rows)
-    deviation = np.ones(len(rows))
-    deviation[at] = _reach(x[at], at, own, trials, rows) / NINETY_SD
+    deviation, known = (
+        np.ones(len(rows)),
+        len(effect_coordinates(base.point.terms, comparison.sizes)),
+    )
+    if known:
+        deviation[:known] = base.fit.deviation[:known]
+    deviation[at] = own.reach / NINETY_SD
     fitted, apart = comparison.fitted(), comparison.apart()
     before, after = holding_lines(fitted, [nothing.point, own.point])
     value = misfit(fitted, after)
@@ -198,12 +244,13 @@ def _hypothesis(
     return Hypothesis(fit, gain, *told)
 
 
-def _reach(
-    x: float, at: int, own: _Trial, trials: Sequence[_Trial], rows: Sequence[Coordinate]
-) -> float:
-    """Return the half width of the interval of a value x: up to the nearest worse values on both
-    sides of all that are as good.
+def _reach(comparison: Comparison, own: _Trial, trials: Sequence[_Trial]) -> float:
+    """Return the half width of the interval of the first value of the last term of a trial: up to
+    the nearest worse values on both sides of all that are as good.
     """
+    rows = effect_coordinates(own.point.terms, comparison.sizes)
+    at = _first_value(own.point, rows)
+    x = to_vector(own.point, rows)[at]
     tried = [
         (to_vector(trial.point, rows)[at], trial.away - own.away < FREE_RIVAL_DB)
         for trial in trials
@@ -212,4 +259,4 @@ def _reach(
     alike = [value for value, good in tried if good]
     below = max((value for value, _ in tried if value < min(alike)), default=min(alike))
     above = min((value for value, _ in tried if value > max(alike)), default=max(alike))
-    return max(x - below, above - x, rows[at].step)
+    return float(max(x - below, above - x, rows[at].step))

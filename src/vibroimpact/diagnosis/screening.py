@@ -21,6 +21,7 @@ from .nuisances import Nuisances
 from .sensor_starts import sensor_terms
 
 AT_A_TIME = 256  # points whose lines are held in memory
+MODE = "mode_frequency_error"
 TRIED = 12  # of the points that derivatives predict, on each stretch
 KEPT, FEWEST_KEPT = 0.3, 40  # of the points: those that are tried on all stretches
 AGAIN, MANY = 2, 24  # values at a place of an effect with MANY trials, when one more is sought
@@ -69,6 +70,7 @@ def screen(
         for effect in effects
         if not placed[effect.id]
         for location in locations(effect, *tried_at)
+        if effect.id != MODE or location in comparison.resonant
     ]
     known = [(effect, place) for effect in effects for place in sorted(placed[effect.id])]
     far = [term for each in anywhere for term in far_terms(*each, sizes)]

@@ -4,8 +4,8 @@ no part.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -97,15 +97,14 @@ class Hypothesis:
 class Search:
     """The hypothesis that nothing is missing, and hypotheses of effects, best first.
 
-    failed: effects without a value that could be run. screened: single effects in addition to
-    nothing, as screened, best first. bases: names of the points to which another effect was sought.
+    failed: effects without a value that could be run. screened {name of a base: points with one
+    effect more, as screened, best first}: the bases are nothing and what got a further effect.
     """
 
     nothing: Hypothesis
     hypotheses: tuple[Hypothesis, ...]
     failed: tuple[str, ...] = ()
-    screened: tuple[Screened, ...] = ()
-    bases: tuple[str, ...] = ()
+    screened: Mapping[str, tuple[Screened, ...]] = field(default_factory=dict)
 
     @property
     def other_firsts(self) -> list[Hypothesis]:
@@ -114,7 +113,7 @@ class Search:
         """
         singles = [each for each in self.hypotheses if len(each.point.terms) == 1]
         least = max(CONTENDS * singles[0].gain if singles else 0.0, needed_gain(0.0))
-        new = (each for each in singles if each.point.name not in self.bases)
+        new = (each for each in singles if each.point.name not in self.screened)
         return [each for each in new if each.worth > least]
 
 
@@ -174,14 +173,13 @@ def _forward(
     at: _Benches, before: Search, base: Hypothesis, most: int, log: Callable[[str], None]
 ) -> Search:
     """Return a Search with the hypotheses of up to `most` effects in addition to a base."""
-    nothing, screened = before.nothing, before.screened
+    nothing, screened = before.nothing, dict(before.screened)
     found = {each.point.name: each for each in before.hypotheses}
-    failed, bases = set(before.failed), list(before.bases)
+    failed = set(before.failed)
     for _ in range(most):
-        bases.append(base.point.name)
         about = nuisances_at(at.screened, base.point, at.comparison.nuisances())
-        screening = _screened(at, about, screened)
-        screened = screened or screening.ranked
+        screening = _screened(at, about, screened.get(nothing.point.name, ()))
+        screened[base.point.name] = screening.ranked
         failed |= {*screening.failed}
         raced = _race(at, about, screening.ranked)
         if not _promises(about, raced, base):
@@ -196,12 +194,12 @@ def _forward(
         if best.sure_gain_over(base) < needed_gain(base.worth):
             break
         if len(best.point.terms) > 1:
-            others = _without_first(at, best, nothing, screened, log)
+            others = _without_first(at, best, nothing, screened[nothing.point.name], log)
             found |= {each.point.name: each for each in others}
             best = max([best, *others], key=_rated)
         base = best
     hypotheses = sorted(found.values(), key=lambda each: -each.gain)
-    return Search(nothing, tuple(hypotheses), tuple(sorted(failed)), screened, tuple(bases))
+    return Search(nothing, tuple(hypotheses), tuple(sorted(failed)), screened)
 
 
 def _nothing(at: _Benches) -> Hypothesis:
