@@ -161,9 +161,23 @@ def declared(name: str, field: FieldInfo) -> DeclaredKey:
         range=_range(annotation),
         default=_default(field),
         meaning=field.description or "",
-        example=", ".join(_written(example) for example in field.examples or ()),
+        example=", ".join(map(_written, examples_of(field))),
         sections=sections,
     )
+
+
+def examples_of(field: FieldInfo) -> list:
+    """Return the examples of a key: those stated, else its default, or the one value that it takes.
+
+    A default that is empty or a section shows nothing.
+    """
+    default = field.get_default()
+    if field.examples is not None:
+        return field.examples
+    if get_origin(field.annotation) is Literal and len(get_args(field.annotation)) == 1:
+        return [*get_args(field.annotation)]
+    shows = default not in (PydanticUndefined, None, ()) and not sections_in(field.annotation)
+    return [default] if shows else []
 
 
 def _annotation(field: FieldInfo) -> Any:
