@@ -42,6 +42,10 @@ FROM = (
     " be given from either end."
 )
 TO = "Position of the end of the fluid; null for the end of the tube."
+UNDAMPED = (
+    "has no effect with an added mass coefficient: give an equivalent diameter (annulus) for"
+    " damping"
+)
 Coefficient_of_mass = Annotated[
     Number, Range("1 for a circle in much fluid, more when confined", at_least=0), Unit("1")
 ]
@@ -155,11 +159,7 @@ class FluidOutside(FluidInside):
         if value is not None and info.data.get("mixture", True) is None:
             raise PydanticCustomError("unused", "has no effect without mixture: give one")
         if value is not None and getattr(info.data.get("confinement"), "kind", "") == "coefficient":
-            raise PydanticCustomError(
-                "unused",
-                "has no effect with an added mass coefficient: give an equivalent diameter"
-                " (annulus) for damping",
-            )
+            raise PydanticCustomError("unused", UNDAMPED)
         return value
 
     @field_validator("viscosity_Pa_s")
@@ -168,11 +168,7 @@ class FluidOutside(FluidInside):
         """Return the viscosity given, or that of the named fluid; 0 if nothing uses it."""
         if getattr(info.data.get("confinement"), "kind", None) == "coefficient":
             if value:
-                raise PydanticCustomError(
-                    "unused",
-                    "has no effect with an added mass coefficient: give an equivalent diameter"
-                    " (annulus) for damping",
-                )
+                raise PydanticCustomError("unused", UNDAMPED)
             return 0.0
         return given_or_named(value, info, fluid_properties)
 

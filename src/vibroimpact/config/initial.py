@@ -48,8 +48,8 @@ class RigidVelocity(Section):
     about_m: Vector = Field((0.0, 0.0, 0.0), description=ABOUT)
 
 
-class ModeDisplacement(Section):
-    """A displacement in the shape of a mode."""
+class Mode(Section):
+    """The shape of a mode, and where its amplitude is given."""
 
     kind: Literal["mode"] = Field(description="This kind of field.")
     number: Mode_number = Field(description=NUMBER, examples=[1])
@@ -57,20 +57,19 @@ class ModeDisplacement(Section):
         description="Named point at which the amplitude is given.", examples=["tip"]
     )
     direction: Axis = Field(description="Direction of the amplitude.", examples=["x"])
+
+
+class ModeDisplacement(Mode):
+    """A displacement in the shape of a mode."""
+
     amplitude_m: Amplitude = Field(
         description="Displacement of the point along the direction.", examples=[1.0e-3]
     )
 
 
-class ModeVelocity(Section):
+class ModeVelocity(Mode):
     """A velocity in the shape of a mode."""
 
-    kind: Literal["mode"] = Field(description="This kind of field.")
-    number: Mode_number = Field(description=NUMBER, examples=[1])
-    point: Name = Field(
-        description="Named point at which the amplitude is given.", examples=["tip"]
-    )
-    direction: Axis = Field(description="Direction of the amplitude.", examples=["x"])
     amplitude_m_per_s: Amplitude = Field(
         description="Velocity of the point along the direction.", examples=[0.1]
     )
