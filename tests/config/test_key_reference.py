@@ -9,7 +9,12 @@ import pytest
 import yaml
 from pydantic import TypeAdapter
 
-from vibroimpact.config.declared_keys import declared_sections, meaning_of, unit_of
+from vibroimpact.config.declared_keys import (
+    declared_sections,
+    examples_of,
+    meaning_of,
+    unit_of,
+)
 from vibroimpact.config.json_schema import json_schema
 from vibroimpact.config.key_reference import markdown
 from vibroimpact.config.measured_structure import MeasuredStructure
@@ -45,11 +50,11 @@ def test_every_key_has_a_meaning_and_a_valid_example(name, field):
     assert field.description and field.description.endswith(".")
     holds = members(field.annotation)
     if not any(isinstance(each, type) and issubclass(each, Section) for each in holds):
-        assert field.examples
+        assert examples_of(field)
     checked = TypeAdapter(
         Annotated[(field.annotation, *field.metadata)] if field.metadata else field.annotation
     )
-    for example in field.examples or ():
+    for example in examples_of(field):
         checked.validate_python(example)
     unit_of(name, field)  # raises where a number has none
 

@@ -7,6 +7,7 @@ import re
 import pytest
 
 from tests.support import two_masses
+from vibroimpact.config.declared_keys import examples_of
 from vibroimpact.config.measured_structure import MeasuredStructure
 from vibroimpact.config.reading import ConfigError
 from vibroimpact.diagnosis.identified.local_laws import LAWS
@@ -138,8 +139,8 @@ structure:
 def test_every_declared_key_has_an_example():
     keys = MeasuredStructure.model_fields
     for name, key in keys.items():
-        assert key.description.endswith(".") and len(key.examples) == 1, name
-    examples = {name: key.examples[0] for name, key in keys.items()}
+        assert key.description.endswith(".") and len(examples_of(key)) == 1, name
+    examples = {name: examples_of(key)[0] for name, key in keys.items()}
     assert MeasuredStructure.model_validate(examples).emphasis == 1.0
 
 

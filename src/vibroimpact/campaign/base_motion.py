@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 from scipy import fft
 
-from .checks.stated import check_row
+from .checks.stated import check_row, warning
 from .force_kinds import BASE
 from .signals import CampaignSignals, transfer_band
 
@@ -108,9 +108,8 @@ def base_motion_rows(signals: CampaignSignals) -> Iterator[dict]:
         )
     fixed = names[np.array(signals.kinds) == "displacement"]
     if fixed.size:
-        yield check_row(
+        yield warning(
             "base motion",
-            "warn",
             f"The displacements {', '.join(fixed)} are taken as relative to the base: if their"
             " sensors stand on the floor, leave them out.",
         )

@@ -80,6 +80,14 @@ ABOUT = {
     "valid_samples": ("1", "number of samples of the record that count, from its start"),
     "time": ("s", "time since the start of the record"),
 }
+# Of the attributes that a file need not state.
+DEFAULTS = {
+    "antialias": "",
+    "start_up": "stationary",
+    "period_samples": 0,
+    "transient_periods": 0,
+    "source": "",
+}
 LARGEST = 1.0e15  # of any unit; larger samples, such as the fill values of netCDF, are none
 SYNTHETIC = "simulated"  # how the source of a campaign without measurements begins
 SAME_POINT_M = 5.0e-3  # largest distance of a channel from its nominal point
@@ -166,16 +174,8 @@ def campaign_dataset(
         **_level_variables(levels),
         **{name: (OPTIONAL[name], np.asarray(values)) for name, values in (optional or {}).items()},
     }
-    defaults = {
-        "antialias": "fir80",
-        "start_up": "stationary",
-        "period_samples": 0,
-        "transient_periods": 0,
-        "source": "",
-    }
-    return xr.Dataset(
-        data, attrs={"sampling_frequency": float(sampling_frequency), **defaults, **attributes}
-    )
+    stated = {**DEFAULTS, "antialias": "fir80", **attributes}
+    return xr.Dataset(data, attrs={"sampling_frequency": float(sampling_frequency), **stated})
 
 
 def _loads(force, drive, sampling_frequency, band):
@@ -287,11 +287,10 @@ def with_no_force(campaign: xr.Dataset) -> xr.Dataset:
         for name, dims in NEEDED.items()
         if name.startswith("force")
     }
-    names = ("force_channel_name", np.array([], dtype=object))
-    loads = {}
     if "load_rms" not in campaign:
-        loads["load_rms"] = ("record", np.full(campaign.sizes.get("record", 0), np.nan))
-    return campaign.assign(empty).assign(loads).assign({names[0]: ("force_channel", names[1])})
+        empty["load_rms"] = (("record",), np.full(campaign.sizes.get("record", 0), np.nan))
+    empty["force_channel_name"] = (("force_channel",), np.array([], dtype=object))
+    return campaign.assign(empty)
 
 
 def decode_texts(campaign: xr.Dataset) -> xr.Dataset:
@@ -366,15 +365,8 @@ def fill_missing(campaign: xr.Dataset) -> xr.Dataset:
             np.array([f"record {index}" for index in range(count)], dtype=object),
         )
         assumed.append("record_name is missing: records were numbered")
-    defaults = {
-        "antialias": "",
-        "start_up": "stationary",
-        "period_samples": 0,
-        "transient_periods": 0,
-        "source": "",
-    }
     return campaign.assign(new).assign_attrs(
-        {**defaults, **campaign.attrs, "assumed": "\n".join(assumed)}
+        {**DEFAULTS, **campaign.attrs, "assumed": "\n".join(assumed)}
     )
 
 

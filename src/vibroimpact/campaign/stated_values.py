@@ -22,8 +22,6 @@ Kind = Literal["acceleration", "velocity", "displacement", "contact_force", "str
 KINDS = get_args(Kind)
 SPLITS = ("fit", "holdout")
 START_UPS = ("rest", "stationary")
-METRES = "is it in millimetres? Write metres"
-GAP = "give the radial clearance in m, NaN if there is none"
 LONGEST_NAME = 200  # characters
 HIGHEST_RATE_HZ = 1.0e9
 
@@ -48,17 +46,19 @@ class Range:
     too_high: str = ""
 
 
+METRES = "is it in millimetres? Write metres"
+GAP = "give the radial clearance in m, NaN if there is none"
+CLEARANCE = Range(0.0, 1.0, "m", GAP, unknown=True, too_high=METRES)
+KNOWN = "write metres, NaN if it is not known"
+PLACE = Range(-1.0e4, 1.0e4, "m", KNOWN, unknown=True, too_high=METRES)
+DIRECTION = Range(-1.0e4, 1.0e4, "", "write a unit vector", unknown=True)
 RANGES = {
-    "gap": Range(0.0, 1.0, "m", GAP, unknown=True, too_high=METRES),
-    "support_gap": Range(0.0, 1.0, "m", GAP, unknown=True, too_high=METRES),
-    "channel_point": Range(
-        -1.0e4, 1.0e4, "m", "write metres, NaN if it is not known", unknown=True, too_high=METRES
-    ),
-    "force_channel_point": Range(
-        -1.0e4, 1.0e4, "m", "write metres, NaN if it is not known", unknown=True, too_high=METRES
-    ),
-    "channel_direction": Range(-1.0e4, 1.0e4, "", "write a unit vector", unknown=True),
-    "force_channel_direction": Range(-1.0e4, 1.0e4, "", "write a unit vector", unknown=True),
+    "gap": CLEARANCE,
+    "support_gap": CLEARANCE,
+    "channel_point": PLACE,
+    "force_channel_point": PLACE,
+    "channel_direction": DIRECTION,
+    "force_channel_direction": DIRECTION,
     "load_rms": Range(
         0.0, 1.0e12, "", "write the RMS of force channel 0, or leave load_rms out", unknown=True
     ),

@@ -1,8 +1,7 @@
 """The checks between keys of a configuration: geometry, sampling, names, bands.
 
-A check is a generator whose argument names are the top-level sections it reads; it yields its
-problems as (place, value, text). It runs when those sections are valid by themselves, so that a
-mistake elsewhere does not hide the others.
+A check is a generator of Problems whose argument names are the top-level sections it reads. It runs
+when those sections are valid by themselves, so that a mistake elsewhere does not hide the others.
 """
 
 from __future__ import annotations
@@ -11,7 +10,7 @@ import inspect
 import math
 import os
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any
 
@@ -25,10 +24,9 @@ from . import (
 )
 from . import name_checks as names
 from .excitation import Excitation, highest_frequency
+from .key_problem import Problem, Problems, value_at
 from .schema import Basis, Grid, Identification, Integration, Overlay, RecordKeys, Spectra
 from .structure import Structure
-
-Problems = Iterator[tuple[str, Any, str]]
 
 STEPS_PER_EXCITED_PERIOD = 20
 # kernels.RATIO, output_filter.LEAST_STAGES and PASS_FRACTION, which only the integration may import
@@ -42,17 +40,20 @@ LEAST_LOG_STEP = 2e-5  # of loads spaced in logarithm, which are rounded to 6 di
 TOLERANCE = 1e-9
 
 
-def cross_problems(sections: Mapping[str, Any]) -> list[tuple[str, Any, str]]:
-    """Return [(place, value, text)], one per problem between sections.
+def cross_problems(sections: Mapping[str, Any]) -> list[Problem]:
+    """Return the problems between sections, with their values.
 
     sections: {name: section} of those that are valid by themselves.
     """
-    problems: list[tuple[str, Any, str]] = []
+    problems: list[Problem] = []
     for check in CHECKS:
         wanted = _sections(check)
         if all(sections.get(name) is not None for name in wanted) and _concerns(check, sections):
             problems += check(*(sections[name] for name in wanted))
-    return problems
+    return [
+        each if each.value is not None else each._replace(value=value_at(sections, each.place))
+        for each in problems
+    ]
 
 
 @cache
@@ -75,24 +76,21 @@ def _repeated_values(grid: Grid) -> Problems:
     for key, row in values.items():
         for value, times in Counter(row).items():
             if times > 1:
-                yield (
+                yield Problem(
                     f"grid.{key}",
-                    value,
                     f"stands {times} times: a value names a case, give each once",
+                    value,
                 )
     loads = grid.load_rms_N
     if isinstance(loads, tuple):
         return
     if loads.last <= loads.first and loads.count > 1:
-        yield (
-            "grid.load_rms_N.last",
-            loads.last,
-            f"must be above first = {loads.first}, or the count 1",
+        yield Problem(
+            "grid.load_rms_N.last", f"must be above first = {loads.first}, or the count 1"
         )
     elif math.log(loads.last / loads.first) < LEAST_LOG_STEP * (loads.count - 1):
-        yield (
+        yield Problem(
             "grid.load_rms_N.count",
-            loads.count,
             f"loads between {loads.first} and {loads.last} are equal to 6 digits: give fewer",
         )
 
@@ -101,29 +99,25 @@ def _number_of_cases(grid: Grid) -> Problems:
     loads = grid.load_rms_N
     counts = (len(loads) if isinstance(loads, tuple) else loads.count, len(grid.gap_m), grid.seeds)
     if math.prod(counts) > MOST_CASES:
-        yield (
+        yield Problem(
             "grid",
-            " x ".join(map(str, counts)),
             f"loads, gaps and seeds are {math.prod(counts)} cases, at most {MOST_CASES}: split the"
             " study",
+            " x ".join(map(str, counts)),
         )
 
 
 def _every_step(record: RecordKeys, integration: Integration) -> Problems:
     steps = record.duration_s * integration.steps_per_second
     if record.every_step and steps > MOST_STEPS_KEPT:
-        yield (
+        yield Problem(
             "record.every_step",
-            True,
-            (
-                f"would keep {steps:.3g} steps of every contact, at most {MOST_STEPS_KEPT:g}:"
-                " shorten record.duration_s"
-            ),
+            f"would keep {steps:.3g} steps of every contact, at most {MOST_STEPS_KEPT:g}:"
+            " shorten record.duration_s",
         )
     if record.every_step and integration.start_up_s > 0.0:
-        yield (
+        yield Problem(
             "integration.start_up_s",
-            integration.start_up_s,
             "must be 0 if every step is kept: the run starts at its initial state",
         )
 
@@ -131,118 +125,93 @@ def _every_step(record: RecordKeys, integration: Integration) -> Problems:
 def _force(excitation: Excitation) -> Problems:
     for index, load in enumerate(getattr(excitation, "distributed", ())):
         if load.from_m == load.to_m:
-            yield (
+            yield Problem(
                 f"excitation.distributed[{index}].to_m",
-                list(load.to_m),
                 "is from_m again, the load has no length: give the other end of the stretch",
             )
     if excitation.kind == "measured" and not os.path.isfile(excitation.file):
-        yield (
+        yield Problem(
             "excitation.file",
-            excitation.file,
             "is not a file: give its path from the folder in which the study is run",
         )
 
 
 def _overlay(overlay: Overlay, grid: Grid) -> Problems:
     if overlay.campaign is not None and not os.path.isfile(overlay.campaign):
-        yield (
+        yield Problem(
             "overlay.campaign",
-            overlay.campaign,
             "is not a file: give its path from the folder in which the study is run, or null",
         )
     if overlay.seed < grid.seeds:
-        yield (
+        yield Problem(
             "overlay.seed",
-            overlay.seed,
             f"is a seed of the study, which has 0 to {grid.seeds - 1}: give a larger one",
         )
 
 
-def _bands_pass_the_filter(record: RecordKeys, identification: Identification) -> Problems:
-    passed = FILTER_PASSES * record.sampling_frequency_Hz / 2
-    bands = {
+def _bands(identification: Identification) -> dict[str, tuple[float, ...]]:
+    """Return {key: (low, high) in Hz} of the bands of the methods."""
+    return {
         "peak_search_Hz": identification.peak_search_Hz,
         "lscf.band_Hz": identification.lscf.band_Hz,
         "broadband.band_Hz": identification.broadband.band_Hz,
     }
-    for key, (low, high) in bands.items():
+
+
+def _bands_pass_the_filter(record: RecordKeys, identification: Identification) -> Problems:
+    passed = FILTER_PASSES * record.sampling_frequency_Hz / 2
+    for key, (_, high) in _bands(identification).items():
         if high > passed:
-            yield (
+            yield Problem(
                 f"identification.{key}",
-                [low, high],
                 f"reaches above {passed:g} Hz, which the output filter passes, {FILTER_PASSES:.2f}"
                 " of half record.sampling_frequency_Hz: lower it",
             )
 
 
-def _broadband_is_excited(excitation: Excitation, identification: Identification) -> Problems:
+def _bands_are_excited(excitation: Excitation, identification: Identification) -> Problems:
     if excitation.kind not in ("band_limited", "turbulence"):
         return
     low, high = excitation.band_Hz
-    asked = identification.broadband.band_Hz
-    if asked[0] < low - TOLERANCE or asked[1] > high + TOLERANCE:
-        yield (
+    bands = _bands(identification)
+    begin, end = bands.pop("broadband.band_Hz")
+    if begin < low - TOLERANCE or end > high + TOLERANCE:
+        yield Problem(
             "identification.broadband.band_Hz",
-            list(asked),
-            (
-                f"reaches beyond the excited band {[low, high]} Hz: there spectra of a tube and of"
-                " its linear equivalent are not comparable"
-            ),
+            f"reaches beyond the excited band {[low, high]} Hz: there spectra of a tube and of"
+            " its linear equivalent are not comparable",
         )
-
-
-def _main_peak_is_excited(excitation: Excitation, identification: Identification) -> Problems:
-    if excitation.kind not in ("band_limited", "turbulence"):
-        return
-    low, high = excitation.band_Hz
-    for key, asked in (
-        ("peak_search_Hz", identification.peak_search_Hz),
-        ("lscf.band_Hz", identification.lscf.band_Hz),
-    ):
-        if asked[1] <= low or asked[0] >= high:
-            yield (
+    for key, (begin, end) in bands.items():
+        if end <= low or begin >= high:
+            yield Problem(
                 f"identification.{key}",
-                list(asked),
                 f"lies outside the excited band {[low, high]} Hz: nothing is seen there",
             )
 
 
 def _segments(record: RecordKeys, spectra: Spectra, identification: Identification) -> Problems:
     if spectra.segment_s > record.duration_s:
-        yield (
+        yield Problem(
             "spectra.segment_s",
-            spectra.segment_s,
-            (
-                f"is longer than the record, {record.duration_s:g} s: shorten the segment or"
-                " lengthen record.duration_s"
-            ),
+            f"is longer than the record, {record.duration_s:g} s: shorten the segment or"
+            " lengthen record.duration_s",
         )
     samples = spectra.segment_s * record.sampling_frequency_Hz
     if samples < 16:
-        yield (
+        yield Problem(
             "spectra.segment_s",
-            spectra.segment_s,
             f"holds only {samples:g} samples: in seconds? give at least 16 samples",
         )
 
 
 def _bands_resolved(spectra: Spectra, identification: Identification) -> Problems:
-    bands = {
-        "peak_search_Hz": identification.peak_search_Hz,
-        "lscf.band_Hz": identification.lscf.band_Hz,
-        "broadband.band_Hz": identification.broadband.band_Hz,
-    }
-    for key, (low, high) in bands.items():
+    for key, (low, high) in _bands(identification).items():
         lines = (high - low) * spectra.segment_s
         if lines < 8:
-            yield (
+            yield Problem(
                 f"identification.{key}",
-                [low, high],
-                (
-                    f"holds {lines:.0f} lines of {1 / spectra.segment_s:g} Hz: widen it or lengthen"
-                    " spectra.segment_s"
-                ),
+                f"holds {lines:.0f} lines of {1 / spectra.segment_s:g} Hz: widen it or lengthen"
+                " spectra.segment_s",
             )
 
 
@@ -250,13 +219,10 @@ def _step_and_force(excitation: Excitation, integration: Integration) -> Problem
     highest = highest_frequency(excitation)
     needed = STEPS_PER_EXCITED_PERIOD * highest
     if integration.steps_per_second < needed:
-        yield (
+        yield Problem(
             "integration.steps_per_second",
-            integration.steps_per_second,
-            (
-                f"is fewer than {STEPS_PER_EXCITED_PERIOD} steps per period of the highest excited"
-                f" frequency, {highest:g} Hz: give at least {math.ceil(needed)}"
-            ),
+            f"is fewer than {STEPS_PER_EXCITED_PERIOD} steps per period of the highest excited"
+            f" frequency, {highest:g} Hz: give at least {math.ceil(needed)}",
         )
 
 
@@ -264,15 +230,12 @@ def _step_and_modes(structure: Structure, basis: Basis, integration: Integration
     omega_step = 2 * math.pi * basis.free_modes_to_Hz / integration.steps_per_second
     largest = LARGEST_OMEGA_STEP[integration.scheme]
     if omega_step > largest:
-        yield (
+        yield Problem(
             "integration.steps_per_second",
-            integration.steps_per_second,
-            (
-                f"gives omega x step = {omega_step:.3g} for free modes to"
-                f" {basis.free_modes_to_Hz:g} Hz, at most {largest:g}: give at least"
-                f" {math.ceil(2 * math.pi * basis.free_modes_to_Hz / largest)} or keep fewer free"
-                " modes"
-            ),
+            f"gives omega x step = {omega_step:.3g} for free modes to"
+            f" {basis.free_modes_to_Hz:g} Hz, at most {largest:g}: give at least"
+            f" {math.ceil(2 * math.pi * basis.free_modes_to_Hz / largest)} or keep fewer free"
+            " modes",
         )
 
 
@@ -283,14 +246,11 @@ def _step_and_samples(integration: Integration, record: RecordKeys) -> Problems:
     stages = ratio / FILTER_RATIO
     if stages < FILTER_STAGES - TOLERANCE or abs(stages - round(stages)) > TOLERANCE:
         nearest = max(FILTER_STAGES, round(stages)) * FILTER_RATIO * record.sampling_frequency_Hz
-        yield (
+        yield Problem(
             "integration.steps_per_second",
-            integration.steps_per_second,
-            (
-                f"must be {FILTER_RATIO} times a whole multiple of record.sampling_frequency_Hz ="
-                f" {record.sampling_frequency_Hz:g} (the output filter's first stage divides by"
-                f" {FILTER_RATIO}, its second by {FILTER_STAGES} or more): {nearest:g} is near"
-            ),
+            f"must be {FILTER_RATIO} times a whole multiple of record.sampling_frequency_Hz ="
+            f" {record.sampling_frequency_Hz:g} (the output filter's first stage divides by"
+            f" {FILTER_RATIO}, its second by {FILTER_STAGES} or more): {nearest:g} is near",
         )
 
 
@@ -303,19 +263,15 @@ def _whole_samples(record: RecordKeys, integration: Integration) -> Problems:
     ):
         samples = duration * record.sampling_frequency_Hz
         if abs(samples - round(samples)) > 1e-6 * max(1.0, samples):
-            yield (
+            yield Problem(
                 place,
-                duration,
-                (
-                    f"is {samples:.3f} samples of 1/{record.sampling_frequency_Hz:g} s: give a"
-                    " whole number of samples"
-                ),
+                f"is {samples:.3f} samples of 1/{record.sampling_frequency_Hz:g} s: give a"
+                " whole number of samples",
             )
     samples = record.duration_s * record.sampling_frequency_Hz
     if not 0.5 < samples <= MOST_SAMPLES:
-        yield (
+        yield Problem(
             "record.duration_s",
-            record.duration_s,
             f"is {samples:.3g} samples of every channel, from 1 to {MOST_SAMPLES:g}: in seconds?",
         )
 
@@ -383,8 +339,7 @@ CHECKS: tuple[Callable[..., Problems], ...] = (
     _force,
     _overlay,
     _bands_pass_the_filter,
-    _broadband_is_excited,
-    _main_peak_is_excited,
+    _bands_are_excited,
     _segments,
     _bands_resolved,
     _step_and_force,

@@ -31,9 +31,7 @@ FIRST_AXIS_FIELD = Field(None, description=FIRST_AXIS, examples=[[0.0, 1.0, 0.0]
 class TubeSection(Section):
     """A circular tube. It is the default: its `kind` may be left out."""
 
-    kind: Literal["tube"] = Field(
-        "tube", description="This kind of cross-section.", examples=["tube"]
-    )
+    kind: Literal["tube"] = Field("tube", description="This kind of cross-section.")
     outer_diameter_m: Diameter_m = Field(description="Outer diameter.", examples=[0.02222])
     wall_thickness_m: Wall_m = Field(
         description="Wall thickness, less than half the outer diameter.", examples=[0.00127]
@@ -41,14 +39,13 @@ class TubeSection(Section):
     shear_coefficient: Shear_coefficient = Field(
         0.53,
         description="Shear coefficient after Cowper (1966). Only the Timoshenko theory uses it.",
-        examples=[0.53],
     )
 
 
 class RoundSection(Section):
     """A solid circle, as of a rod."""
 
-    kind: Literal["round"] = Field(description="This kind of cross-section.", examples=["round"])
+    kind: Literal["round"] = Field(description="This kind of cross-section.")
     diameter_m: Diameter_m = Field(description="Diameter.", examples=[0.0095])
     shear_coefficient: Shear_coefficient | None = Field(None, description=COWPER, examples=[0.89])
 
@@ -56,9 +53,7 @@ class RoundSection(Section):
 class RectangleSection(Section):
     """A solid rectangle, as of a bar or a blade."""
 
-    kind: Literal["rectangle"] = Field(
-        description="This kind of cross-section.", examples=["rectangle"]
-    )
+    kind: Literal["rectangle"] = Field(description="This kind of cross-section.")
     sides_m: Annotated[tuple[Diameter_m, ...], Two_axes] = Field(
         description="Sides along the first and the second axis.", examples=[[0.010, 0.040]]
     )
@@ -71,9 +66,7 @@ class GeneralSection(Section):
     centre is its centroid.
     """
 
-    kind: Literal["general"] = Field(
-        description="This kind of cross-section.", examples=["general"]
-    )
+    kind: Literal["general"] = Field(description="This kind of cross-section.")
     area_m2: Area_m2 = Field(description="Area of the material.", examples=[4.0e-4])
     second_moments_m4: Annotated[tuple[Second_moment, ...], Two_axes] = Field(
         description="Second moments of area that resist deflection along the first and the second"

@@ -115,10 +115,10 @@ def unit_of(name: str, field: FieldInfo) -> str:
 
     Raises ValueError for a number whose unit is stated nowhere.
     """
-    held = members(_annotation(field))
+    held = members(annotation_of(field))
     if not {float, int} & set(held):
         return ""
-    stated = [each for each in _metadata(_annotation(field)) if isinstance(each, Unit)]
+    stated = [each for each in _metadata(annotation_of(field)) if isinstance(each, Unit)]
     if stated:
         return stated[-1].symbol
     endings = [ending for ending in UNITS if name.endswith(ending)]
@@ -152,7 +152,7 @@ def kind_of(member: Any) -> str | None:
 
 def declared(name: str, field: FieldInfo) -> DeclaredKey:
     """Return the DeclaredKey of a field."""
-    annotation = _annotation(field)
+    annotation = annotation_of(field)
     sections = sections_in(annotation)
     return DeclaredKey(
         name=name,
@@ -161,14 +161,29 @@ def declared(name: str, field: FieldInfo) -> DeclaredKey:
         range=_range(annotation),
         default=_default(field),
         meaning=field.description or "",
-        example=", ".join(_written(example) for example in field.examples or ()),
+        example=", ".join(map(_written, examples_of(field))),
         sections=sections,
     )
 
 
-def _annotation(field: FieldInfo) -> Any:
+def examples_of(field: FieldInfo) -> list:
+    """Return the examples of a key: those stated, else its default, or the one value that it takes.
+
+    A default that is empty or a section shows nothing.
+    """
+    default = field.get_default()
+    if field.examples is not None:
+        return field.examples
+    if get_origin(field.annotation) is Literal and len(get_args(field.annotation)) == 1:
+        return [*get_args(field.annotation)]
+    shows = default not in (PydanticUndefined, None, ()) and not sections_in(field.annotation)
+    return [default] if shows else []
+
+
+def annotation_of(field: FieldInfo) -> Any:
     """Return the type of a field with the metadata that pydantic keeps apart from it."""
-    return Annotated[(field.annotation, *field.metadata)] if field.metadata else field.annotation
+    extras = [*field.metadata] + ([field] if field.discriminator else [])
+    return Annotated[(field.annotation, *extras)] if extras else field.annotation
 
 
 def _metadata(annotation: Any) -> list[Any]:

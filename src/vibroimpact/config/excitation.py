@@ -78,11 +78,8 @@ class Forces(Section):
     turn_about: Literal["z", "tube"] = Field(
         "z",
         description="Axis of turn_deg: the global z axis, or the tangent of the tube at the point.",
-        examples=["z"],
     )
-    factor: Factor = Field(
-        1.0, description="Force at the point over the force of the case.", examples=[1.0]
-    )
+    factor: Factor = Field(1.0, description="Force at the point over the force of the case.")
     also: tuple[ForcePoint, ...] = Field((), description="More points that the same force acts at.")
     distributed: tuple[Distributed, ...] = Field(
         (), description="Stretches of a tube that the same force is spread over."
@@ -106,9 +103,7 @@ class BandLimited(Forces):
     record is exactly the load of the case.
     """
 
-    kind: Literal["band_limited"] = Field(
-        description="This kind of excitation.", examples=["band_limited"]
-    )
+    kind: Literal["band_limited"] = Field(description="This kind of excitation.")
     band_Hz: Band_Hz = Field(description=BAND, examples=[[5.0, 200.0]])
 
 
@@ -117,7 +112,7 @@ class Measured(Forces):
     record is exactly the load of the case. It must last for start-up and record.
     """
 
-    kind: Literal["measured"] = Field(description="This kind of excitation.", examples=["measured"])
+    kind: Literal["measured"] = Field(description="This kind of excitation.")
     file: str = Field(
         description="File of the force: netCDF (.nc), CSV with a header line (.csv) or MATLAB v5"
         " (.mat), from the folder in which the study is run.",
@@ -135,7 +130,7 @@ class Measured(Forces):
 class Harmonic(Forces):
     """A sine whose RMS is the load of the case."""
 
-    kind: Literal["harmonic"] = Field(description="This kind of excitation.", examples=["harmonic"])
+    kind: Literal["harmonic"] = Field(description="This kind of excitation.")
     frequency_Hz: Frequency_Hz = Field(description=HARMONIC, examples=[20.0])
     phase_deg: Phase_deg = Field(0.0, description=PHASE, examples=[90.0])
 
@@ -147,9 +142,7 @@ class WhiteNoise(Forces):
     The RMS of one record is the load on average only: records are not scaled to it.
     """
 
-    kind: Literal["white_noise"] = Field(
-        description="This kind of excitation.", examples=["white_noise"]
-    )
+    kind: Literal["white_noise"] = Field(description="This kind of excitation.")
 
 
 class Still(Section):
@@ -157,25 +150,23 @@ class Still(Section):
     any. The load of a case has no effect.
     """
 
-    kind: Literal["none"] = Field(description="This kind of excitation.", examples=["none"])
+    kind: Literal["none"] = Field(description="This kind of excitation.")
     constant: tuple[DeadLoad, ...] = Field((), description=CONSTANT)
 
 
 class BandSignal(Section):
     """A Gaussian signal with a flat one-sided PSD in a band."""
 
-    kind: Literal["band_limited"] = Field(
-        description="This kind of signal.", examples=["band_limited"]
-    )
+    kind: Literal["band_limited"] = Field(description="This kind of signal.")
     band_Hz: Band_Hz = Field(description=BAND, examples=[[5.0, 200.0]])
 
 
 class HarmonicSignal(Section):
     """A sine."""
 
-    kind: Literal["harmonic"] = Field(description="This kind of signal.", examples=["harmonic"])
+    kind: Literal["harmonic"] = Field(description="This kind of signal.")
     frequency_Hz: Frequency_Hz = Field(description=HARMONIC, examples=[20.0])
-    phase_deg: Phase_deg = Field(0.0, description=PHASE, examples=[0.0])
+    phase_deg: Phase_deg = Field(0.0, description=PHASE)
 
 
 class BaseMotion(Section):
@@ -183,9 +174,7 @@ class BaseMotion(Section):
     Displacements of sensors are relative to the base.
     """
 
-    kind: Literal["base_motion"] = Field(
-        description="This kind of excitation.", examples=["base_motion"]
-    )
+    kind: Literal["base_motion"] = Field(description="This kind of excitation.")
     direction: Direction = Field(
         description="Direction of the acceleration. Its length does not matter.",
         examples=[[1.0, 0.0, 0.0]],
@@ -194,7 +183,6 @@ class BaseMotion(Section):
         "moving",
         description="Whether the obstacles of the supports move with the base or are fixed in"
         " space. Displacements of contacts with fixed obstacles are absolute.",
-        examples=["moving"],
     )
     signal: Annotated[BandSignal | HarmonicSignal, By_kind] = Field(
         description="How the acceleration varies in time."
@@ -212,9 +200,7 @@ class Turbulence(TurbulentForce):
     `check` prints the load that a spectrum with a velocity or a table amounts to.
     """
 
-    kind: Literal["turbulence"] = Field(
-        description="This kind of excitation.", examples=["turbulence"]
-    )
+    kind: Literal["turbulence"] = Field(description="This kind of excitation.")
     constant: tuple[DeadLoad, ...] = Field((), description=CONSTANT)
 
 

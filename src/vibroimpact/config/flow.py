@@ -53,7 +53,7 @@ class FlowStretch(Ends):
 class Connors(Section):
     """Connors' criterion: V_c = K f sqrt(m 2 pi zeta / density)."""
 
-    kind: Literal["connors"] = Field(description="This kind of criterion.", examples=["connors"])
+    kind: Literal["connors"] = Field(description="This kind of criterion.")
     constant: Annotated[tuple[Annotated[Constant, Unit("1")], ...], Not_empty] = Field(
         description="K, or several for a range. It belongs to the pattern of the bundle and to the"
         " definition of damping of its source, so that there is no default.",
@@ -67,7 +67,7 @@ class Tema(Section):
     The factors are second-hand: compare them with the standard before a design rests on them.
     """
 
-    kind: Literal["tema"] = Field(description="This kind of criterion.", examples=["tema"])
+    kind: Literal["tema"] = Field(description="This kind of criterion.")
     pattern_deg: Literal[30, 45, 60, 90] = Field(
         description="Angle of the pattern: 30 and 60 triangular, 45 and 90 square.", examples=[90]
     )
@@ -85,7 +85,7 @@ class Lags(Section):
     gamma = [1/mu], with the delay mu D/V: kind quasi_steady.
     """
 
-    kind: Literal["lags"] = Field(description="This kind of coupling.", examples=["lags"])
+    kind: Literal["lags"] = Field(description="This kind of coupling.")
     stiffness: Annotated[Coefficient, Unit("1")] = Field(description="a0.", examples=[20.0])
     damping: Annotated[Coefficient, Unit("1")] = Field(description="a1.", examples=[0.3])
     amplitudes: tuple[Annotated[Coefficient, Unit("1")], ...] = Field(
@@ -110,15 +110,13 @@ class QuasiSteady(Section):
     kind lags with stiffness -lift_slope, damping drag, amplitudes [lift_slope], rates [1/delay].
     """
 
-    kind: Literal["quasi_steady"] = Field(
-        description="This kind of coupling.", examples=["quasi_steady"]
-    )
+    kind: Literal["quasi_steady"] = Field(description="This kind of coupling.")
     lift_slope: Annotated[Coefficient, Unit("1")] = Field(
         description="Slope of the lift coefficient over y/D.", examples=[-20.0]
     )
     drag: Annotated[Coefficient, Unit("1")] = Field(description="Drag coefficient.", examples=[0.3])
     delay: Annotated[Positive_number, Unit("1")] = Field(
-        1.0, description="Delay of the lift over D/V, mu.", examples=[1.0]
+        1.0, description="Delay of the lift over D/V, mu."
     )
 
 
@@ -127,7 +125,7 @@ class ConnorsForce(Section):
     critical velocities are Connors'. Its stiffness is 0 in the middle of the band and drifts.
     """
 
-    kind: Literal["connors"] = Field(description="This kind of coupling.", examples=["connors"])
+    kind: Literal["connors"] = Field(description="This kind of coupling.")
     constant: Annotated[Constant, Unit("1")] = Field(description="Connors' K.", examples=[3.0])
     band_Hz: Band_Hz = Field(
         description="Band of the modes that matter. Wider than a decade the stiffness drifts more.",
@@ -140,9 +138,7 @@ class NegativeDamping(Section):
     Connors' critical velocity for a mode of that frequency, and no memory.
     """
 
-    kind: Literal["negative_damping"] = Field(
-        description="This kind of coupling.", examples=["negative_damping"]
-    )
+    kind: Literal["negative_damping"] = Field(description="This kind of coupling.")
     constant: Annotated[Constant, Unit("1")] = Field(description="Connors' K.", examples=[3.0])
     frequency_Hz: Frequency_Hz = Field(
         description="Frequency of the mode that it is frozen at.", examples=[30.0]
@@ -158,15 +154,13 @@ class DimensionlessTurbulence(Section):
     excitation.spectrum.
     """
 
-    kind: Literal["dimensionless"] = Field(
-        description="This kind of turbulence.", examples=["dimensionless"]
-    )
+    kind: Literal["dimensionless"] = Field(description="This kind of turbulence.")
 
 
 class PowerTurbulence(Section):
     """A force whose RMS rises with a power of the velocity, and whose spectrum stays the same."""
 
-    kind: Literal["power"] = Field(description="This kind of turbulence.", examples=["power"])
+    kind: Literal["power"] = Field(description="This kind of turbulence.")
     exponent: Annotated[
         Number, Range("2 for a force like the dynamic pressure", at_least=0, at_most=10), Unit("1")
     ] = Field(description="Exponent of the velocity.", examples=[2.0])

@@ -1,8 +1,7 @@
-"""The checks of a flow across the tube. Each yields (place, value, text), see checks."""
+"""The checks of a flow across the tube."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 from vibroimpact.geometry.sections import outer_width
@@ -10,15 +9,16 @@ from vibroimpact.geometry.sections import outer_width
 from .excitation import Excitation
 from .flow import Flow
 from .geometry_checks import Tube
+from .key_problem import Problem, Problems
 from .structure import Structure
 from .turbulence_checks import direction_of_flow, points_of_spectrum, stretches_of_flow
-
-Problems = Iterator[tuple[str, Any, str]]
 
 
 def acts_along_a_tube(structure: Structure, flow: Flow) -> Problems:
     """Yield a problem: a flow acts along a tube, and this structure is none."""
-    yield "flow", "...", f"acts along a tube, structure.kind is {structure.kind}: leave it out"
+    yield Problem(
+        "flow", f"acts along a tube, structure.kind is {structure.kind}: leave it out", "..."
+    )
 
 
 def stretches(structure: Tube, flow: Flow) -> Problems:
@@ -35,9 +35,8 @@ def pitch(structure: Tube, flow: Flow) -> Problems:
     """Yield a problem unless neighbouring tubes leave a gap."""
     width = outer_width(structure.section)
     if flow.criterion.kind == "tema" and flow.criterion.pitch_m <= width:
-        yield (
+        yield Problem(
             "flow.criterion.pitch_m",
-            flow.criterion.pitch_m,
             f"is not above the diameter of the tube, {width:g} m: give the distance of two axes",
         )
 
@@ -46,9 +45,8 @@ def lags(flow: Flow) -> Problems:
     """Yield a problem unless each lag has an amplitude and a rate."""
     own = flow.coupling
     if own is not None and own.kind == "lags" and len(own.amplitudes) != len(own.rates):
-        yield (
+        yield Problem(
             "flow.coupling.rates",
-            list(own.rates),
             f"has {len(own.rates)} values, amplitudes has {len(own.amplitudes)}: give one of each"
             " per lag",
         )
@@ -57,9 +55,8 @@ def lags(flow: Flow) -> Problems:
 def acting(flow: Flow) -> Problems:
     """Yield a problem unless a flow that acts has a force."""
     if flow.acting_m_per_s is not None and flow.coupling is None:
-        yield (
+        yield Problem(
             "flow.acting_m_per_s",
-            flow.acting_m_per_s,
             "acts through flow.coupling, and there is none: give one, or leave acting_m_per_s out",
         )
 
@@ -68,7 +65,7 @@ def fitted_range(flow: Flow) -> Problems:
     """Yield a problem unless the reduced velocities of a fit ascend."""
     own = getattr(flow.coupling, "reduced_velocity", None)
     if own is not None and own[0] >= own[1]:
-        yield "flow.coupling.reduced_velocity", list(own), "must ascend: give the lower one first"
+        yield Problem("flow.coupling.reduced_velocity", "must ascend: give the lower one first")
 
 
 def following(excitation: Excitation, flow: Flow) -> Problems:
@@ -76,9 +73,8 @@ def following(excitation: Excitation, flow: Flow) -> Problems:
     if flow.turbulence is None or flow.turbulence.kind != "dimensionless":
         return
     if excitation.kind != "turbulence" or not hasattr(excitation.spectrum, "velocity_m_per_s"):
-        yield (
+        yield Problem(
             "flow.turbulence.kind",
-            "dimensionless",
             "needs excitation.kind turbulence with a spectrum of a velocity, such as tube_bundle:"
             " give one, or turbulence of kind power",
         )
@@ -93,4 +89,6 @@ def covered(structure: Tube, excitation: Excitation, flow: Flow) -> Problems:
         moved = spectrum.model_copy(update={"velocity_m_per_s": velocity})
         own = excitation.model_copy(update={"spectrum": moved})
         for _, _, text in points_of_spectrum(structure, own):
-            yield "flow.velocity_m_per_s", velocity, f"is too far for the spectrum, which {text}"
+            yield Problem(
+                "flow.velocity_m_per_s", f"is too far for the spectrum, which {text}", velocity
+            )

@@ -42,6 +42,10 @@ FROM = (
     " be given from either end."
 )
 TO = "Position of the end of the fluid; null for the end of the tube."
+UNDAMPED = (
+    "has no effect with an added mass coefficient: give an equivalent diameter (annulus) for"
+    " damping"
+)
 Coefficient_of_mass = Annotated[
     Number, Range("1 for a circle in much fluid, more when confined", at_least=0), Unit("1")
 ]
@@ -50,27 +54,25 @@ Coefficient_of_mass = Annotated[
 class Unconfined(Section):
     """Much fluid all round: an added mass coefficient of 1 for a circle."""
 
-    kind: Literal["unconfined"] = Field(
-        description="This kind of confinement.", examples=["unconfined"]
-    )
+    kind: Literal["unconfined"] = Field(description="This kind of confinement.")
 
 
 class Bundle(Section):
     """A tube among the tubes of a bundle that do not move."""
 
-    kind: Literal["bundle"] = Field(description="This kind of confinement.", examples=["bundle"])
+    kind: Literal["bundle"] = Field(description="This kind of confinement.")
     pitch_m: Diameter_m = Field(
         description="Distance between the axes of neighbouring tubes.", examples=[0.0320]
     )
     pattern: Literal["triangular", "square"] = Field(
-        "triangular", description="Pattern of the bundle.", examples=["triangular"]
+        "triangular", description="Pattern of the bundle."
     )
 
 
 class Annulus(Section):
     """A tube in a round channel, or in a confinement of the same effect."""
 
-    kind: Literal["annulus"] = Field(description="This kind of confinement.", examples=["annulus"])
+    kind: Literal["annulus"] = Field(description="This kind of confinement.")
     equivalent_diameter_m: Diameter_m = Field(
         description="Inner diameter of the channel, above the diameter of the tube.",
         examples=[0.040],
@@ -80,9 +82,7 @@ class Annulus(Section):
 class AddedMassCoefficient(Section):
     """An added mass that is known, for any cross-section. It brings no damping."""
 
-    kind: Literal["coefficient"] = Field(
-        description="This kind of confinement.", examples=["coefficient"]
-    )
+    kind: Literal["coefficient"] = Field(description="This kind of confinement.")
     added_mass_coefficient: Annotated[
         Annotated[Coefficient_of_mass, One]
         | Annotated[Annotated[tuple[Coefficient_of_mass, ...], Two_axes], List],
@@ -98,7 +98,7 @@ class FluidInside(Section):
     """A fluid that fills the tube and moves with it in all directions."""
 
     model_config = named_or_given("density_kg_per_m3", instead="mixture")
-    kind: Literal["inside"] = Field(description="This kind of fluid.", examples=["inside"])
+    kind: Literal["inside"] = Field(description="This kind of fluid.")
     name: Fluid_name | None = Field(None, description=NAME, examples=["water"])
     temperature_C: Temperature_C | None = Field(
         None, validate_default=True, description=TEMPERATURE, examples=[20.0]
@@ -135,7 +135,7 @@ class FluidOutside(FluidInside):
     """
 
     kind: Literal["outside"] = Field(  # type: ignore[assignment]
-        description="This kind of fluid.", examples=["outside"]
+        description="This kind of fluid."
     )
     confinement: Annotated[Unconfined | Bundle | Annulus | AddedMassCoefficient, By_kind] = Field(
         Unconfined(kind="unconfined"), description="The confinement of the fluid."
@@ -159,11 +159,7 @@ class FluidOutside(FluidInside):
         if value is not None and info.data.get("mixture", True) is None:
             raise PydanticCustomError("unused", "has no effect without mixture: give one")
         if value is not None and getattr(info.data.get("confinement"), "kind", "") == "coefficient":
-            raise PydanticCustomError(
-                "unused",
-                "has no effect with an added mass coefficient: give an equivalent diameter"
-                " (annulus) for damping",
-            )
+            raise PydanticCustomError("unused", UNDAMPED)
         return value
 
     @field_validator("viscosity_Pa_s")
@@ -172,11 +168,7 @@ class FluidOutside(FluidInside):
         """Return the viscosity given, or that of the named fluid; 0 if nothing uses it."""
         if getattr(info.data.get("confinement"), "kind", None) == "coefficient":
             if value:
-                raise PydanticCustomError(
-                    "unused",
-                    "has no effect with an added mass coefficient: give an equivalent diameter"
-                    " (annulus) for damping",
-                )
+                raise PydanticCustomError("unused", UNDAMPED)
             return 0.0
         return given_or_named(value, info, fluid_properties)
 

@@ -1,11 +1,9 @@
-"""The checks of a configuration's geometry: the tube, the points and supports on it, and the gaps.
-Each yields (place, value, text), see checks.
-"""
+"""The checks of the geometry: the tube, the points and supports on it, and the gaps."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,11 +17,11 @@ from vibroimpact.geometry.centreline import (
 from vibroimpact.geometry.sections import outer_width
 from vibroimpact.geometry.support_spans import contact_places, support_middles, support_spans
 
+from .key_problem import Problem, Problems
 from .schema import Grid
 from .structure import Path, UTube
 from .supports import Support
 
-Problems = Iterator[tuple[str, Any, str]]
 Tube = UTube | Path
 
 TOLERANCE = 1e-9
@@ -43,13 +41,10 @@ def path_directions(structure: Tube) -> Problems:
             continue
         toward = np.array(segment.toward) - (np.array(segment.toward) @ tangent) * tangent
         if np.linalg.norm(toward) < 1e-6 * (1 + np.linalg.norm(segment.toward)):
-            yield (
+            yield Problem(
                 f"structure.segments[{index}].toward",
-                list(segment.toward),
-                (
-                    "is parallel to the tube there: give a direction across the tangent"
-                    f" {np.round(tangent, 4).tolist()}"
-                ),
+                "is parallel to the tube there: give a direction across the tangent"
+                f" {np.round(tangent, 4).tolist()}",
             )
             return
         angle = math.radians(segment.angle_deg)
@@ -63,11 +58,11 @@ def slender(structure: Tube) -> Problems:
     if centreline is None or centreline.length <= MOST_SLENDER * width:
         return
     key = "leg_length_m" if structure.kind == "u_tube" else "segments"
-    yield (
+    yield Problem(
         f"structure.{key}",
-        f"{centreline.length:g} m",
         f"makes the tube {centreline.length / width:.3g} times as long as it is wide, {width:g} m"
         f" (at most {MOST_SLENDER:g}): lengths and section both in metres?",
+        f"{centreline.length:g} m",
     )
 
 
@@ -82,27 +77,30 @@ def off_the_tube(centreline: Centreline, place: str, position: Sequence[float]) 
     arc_length, distance = min(places, key=lambda each: each[1])
     if distance > LOCATION_TOLERANCE_M:
         nearest = centreline.position(arc_length)
-        yield (
+        yield Problem(
             place,
-            list(position),
-            (
-                f"is {distance:.4f} m off the tube (at most {LOCATION_TOLERANCE_M} m): "
-                f"the nearest point of the centreline is {np.round(nearest, 4).tolist()} m"
-            ),
+            f"is {distance:.4f} m off the tube (at most {LOCATION_TOLERANCE_M} m): "
+            f"the nearest point of the centreline is {np.round(nearest, 4).tolist()} m",
         )
         return
     ends = {place for segment in centreline.segments for place in (segment.begin, segment.end)}
     for other in ends | {place for place, _ in places}:
         near = np.linalg.norm(centreline.position(other) - position) <= LOCATION_TOLERANCE_M
         if near and abs(other - arc_length) > APART_M:
-            yield (
+            yield Problem(
                 place,
-                list(position),
                 f"is on the tube twice, at arc lengths {min(other, arc_length):.4g} and"
                 f" {max(other, arc_length):.4g} m: move it, or let the tube pass itself at more"
                 f" than {2 * LOCATION_TOLERANCE_M} m",
             )
             return
+
+
+def ends_off_the_tube(centreline: Centreline, place: str, stretch: Any) -> Problems:
+    """Yield a problem for each of from_m and to_m that is given and off the tube."""
+    for key in ("from_m", "to_m"):
+        if (end := getattr(stretch, key)) is not None:
+            yield from off_the_tube(centreline, f"{place}.{key}", end)
 
 
 def points_on_the_tube(structure: Tube, points: Mapping[str, Sequence[float]]) -> Problems:
@@ -124,10 +122,10 @@ def supports_on_the_tube(structure: Tube, supports: Sequence[Support]) -> Proble
     taken: list[tuple[str, float, float]] = []
     for index, support in enumerate(supports):
         if support.at_m is None or support.height_m is None or support.point is not None:
-            yield (
+            yield Problem(
                 f"supports[{index}]",
-                support.name,
                 "is on a tube: give at_m and height_m, and no point",
+                support.name,
             )
             continue
         place = f"supports[{index}]"
@@ -141,9 +139,8 @@ def supports_on_the_tube(structure: Tube, supports: Sequence[Support]) -> Proble
         for low, high in support_spans(centreline, support):
             for other, other_low, other_high in taken:
                 if low < other_high - TOLERANCE and other_low < high - TOLERANCE:
-                    yield (
+                    yield Problem(
                         f"{place}.at_m",
-                        list(support.at_m),
                         f"'{support.name}' overlaps '{other}': move one or lower its height_m",
                     )
             taken.append((support.name, low, high))
@@ -156,20 +153,16 @@ def _lattice_bars(centreline: Centreline, place: str, support: Support) -> Probl
         return
     assert support.at_m is not None and support.height_m is not None
     if spacing < support.height_m:
-        yield (
+        yield Problem(
             f"{place}.profile.spacing_m",
-            spacing,
-            (
-                f"is less than the height of the bars, height_m = {support.height_m:g}: give 0 for"
-                " bars that cross at the same height, or more"
-            ),
+            f"is less than the height of the bars, height_m = {support.height_m:g}: give 0 for"
+            " bars that cross at the same height, or more",
         )
     middle = centreline.locate(support.at_m, support.name)
     room = 2 * min(middle, centreline.length - middle)
     if spacing > room:
-        yield (
+        yield Problem(
             f"{place}.profile.spacing_m",
-            spacing,
             f"puts a pair of bars beyond an end of the tube: at most {room:.4g} m there",
         )
 
@@ -185,15 +178,12 @@ def _across_a_joint(centreline: Centreline, place: str, support: Support) -> Pro
             if low < joint - TOLERANCE and joint < high - TOLERANCE:
                 room = 2 * abs(joint - middle)
                 position = np.round(centreline.position(joint), 4).tolist()
-                yield (
+                yield Problem(
                     f"{place}.height_m",
-                    support.height_m,
-                    (
-                        f"reaches beyond the segment of the tube that '{support.name}' is on, from"
-                        f" arc length {low:.4g} to {high:.4g} m across the joint at {joint:.4g} m,"
-                        f" {position}: at most {room:.4g} m there (in metres?), or move it off the"
-                        " joint, or make it two supports that meet there"
-                    ),
+                    f"reaches beyond the segment of the tube that '{support.name}' is on, from"
+                    f" arc length {low:.4g} to {high:.4g} m across the joint at {joint:.4g} m,"
+                    f" {position}: at most {room:.4g} m there (in metres?), or move it off the"
+                    " joint, or make it two supports that meet there",
                 )
 
 
@@ -209,13 +199,10 @@ def _at_a_held_end(
     places = contact_places(centreline, support)
     for kind, end in zip(kinds, (0.0, centreline.length), strict=True):
         if kind in ("clamped", "pinned") and np.any(np.abs(places - end) < SAME_PLACE_M):
-            yield (
+            yield Problem(
                 f"{place}.at_m",
-                list(support.at_m or ()),
-                (
-                    f"'{support.name}' reaches to the {kind} end of the tube, which does not move:"
-                    " lower its height_m or move it away from the end"
-                ),
+                f"'{support.name}' reaches to the {kind} end of the tube, which does not move:"
+                " lower its height_m or move it away from the end",
             )
 
 
@@ -230,13 +217,10 @@ def support_lists(supports: Sequence[Support]) -> Problems:
         }
         for key, value in lists.items():
             if isinstance(value, tuple) and len(value) != support.points:
-                yield (
+                yield Problem(
                     f"supports[{index}].{key}",
-                    list(value),
-                    (
-                        f"has {len(value)} values for {support.points} contact points: give one"
-                        " value, or one per point"
-                    ),
+                    f"has {len(value)} values for {support.points} contact points: give one"
+                    " value, or one per point",
                 )
 
 
@@ -246,24 +230,24 @@ def gaps(structure: Tube, grid: Grid, supports: Sequence[Support]) -> Problems:
     told = f"half the diameter, {radius:g} m"
     for index, gap in enumerate(grid.gap_m):
         if abs(gap) > radius:
-            yield f"grid.gap_m[{index}]", gap, f"is larger than {told}: {RADIAL}"
+            yield Problem(f"grid.gap_m[{index}]", f"is larger than {told}: {RADIAL}")
     for index, support in enumerate(supports):
         place = f"supports[{index}]"
         if support.gap_m is not None and abs(support.gap_m) > radius:
-            yield f"{place}.gap_m", support.gap_m, f"is larger than {told}: {RADIAL}"
+            yield Problem(f"{place}.gap_m", f"is larger than {told}: {RADIAL}")
             continue
         gap, factor, depth = effective_gap(support, grid)
         if gap * factor > radius >= gap:
-            yield (
+            yield Problem(
                 f"{place}.gap_factor",
-                factor,
                 f"makes the gap of {gap:g} m {gap * factor:.4g} m, larger than {told}: give gap_m",
+                factor,
             )
         elif gap * factor + depth > radius >= gap:
-            yield (
+            yield Problem(
                 f"{place}.profile.{_beyond_the_gap(support)}",
-                depth,
                 f"makes the clearance {gap * factor + depth:.4g} m, larger than {told}: {RADIAL}",
+                depth,
             )
 
 
@@ -292,11 +276,11 @@ def offsets(grid: Grid, supports: Sequence[Support]) -> Problems:
         gap, factor, depth = effective_gap(support, grid)
         clearance = gap * factor + depth
         if clearance > 0.0 and largest > MOST_OFFSET * clearance:
-            yield (
+            yield Problem(
                 f"supports[{index}].centre_offset_m",
-                largest,
                 f"is {largest / clearance:.3g} times the clearance, {clearance:.3g} m (at most"
                 f" {MOST_OFFSET:g}): in metres?",
+                largest,
             )
 
 
@@ -306,8 +290,8 @@ def offsets_on_a_tube(structure: Tube, supports: Sequence[Support]) -> Problems:
     for index, support in enumerate(supports):
         largest = float(np.max(np.linalg.norm(np.atleast_2d(support.centre_offset_m), axis=1)))
         if largest > radius:
-            yield (
+            yield Problem(
                 f"supports[{index}].centre_offset_m",
-                largest,
                 f"is larger than half the diameter, {radius:g} m: in metres?",
+                largest,
             )

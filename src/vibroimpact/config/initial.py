@@ -23,14 +23,14 @@ Amplitude = Annotated[
 class RigidDisplacement(Section):
     """A displacement as of a rigid body: u(p) = translation_m + rotation_rad x (p - about_m)."""
 
-    kind: Literal["rigid"] = Field(description="This kind of field.", examples=["rigid"])
+    kind: Literal["rigid"] = Field(description="This kind of field.")
     translation_m: Vector = Field(
         (0.0, 0.0, 0.0), description="Displacement along x, y and z.", examples=[[1.0e-3, 0.0, 0.0]]
     )
     rotation_rad: Annotated[Vector, Unit("rad")] = Field(
         (0.0, 0.0, 0.0), description=f"{ROTATION}, small.", examples=[[0.0, 1.0e-3, 0.0]]
     )
-    about_m: Vector = Field((0.0, 0.0, 0.0), description=ABOUT, examples=[[0.0, 0.0, 0.0]])
+    about_m: Vector = Field((0.0, 0.0, 0.0), description=ABOUT)
 
 
 class RigidVelocity(Section):
@@ -38,39 +38,38 @@ class RigidVelocity(Section):
     (p - about_m). A velocity that grows along the tube from a pinned end is a rotation about it.
     """
 
-    kind: Literal["rigid"] = Field(description="This kind of field.", examples=["rigid"])
+    kind: Literal["rigid"] = Field(description="This kind of field.")
     translation_m_per_s: Vector = Field(
         (0.0, 0.0, 0.0), description="Velocity along x, y and z.", examples=[[0.1, 0.0, 0.0]]
     )
     rotation_rad_per_s: Annotated[Vector, Unit("rad/s")] = Field(
         (0.0, 0.0, 0.0), description=f"{ROTATION}, per second.", examples=[[0.0, -3.8, 0.0]]
     )
-    about_m: Vector = Field((0.0, 0.0, 0.0), description=ABOUT, examples=[[0.0, 0.0, 0.0]])
+    about_m: Vector = Field((0.0, 0.0, 0.0), description=ABOUT)
 
 
-class ModeDisplacement(Section):
-    """A displacement in the shape of a mode."""
+class Mode(Section):
+    """The shape of a mode, and where its amplitude is given."""
 
-    kind: Literal["mode"] = Field(description="This kind of field.", examples=["mode"])
+    kind: Literal["mode"] = Field(description="This kind of field.")
     number: Mode_number = Field(description=NUMBER, examples=[1])
     point: Name = Field(
         description="Named point at which the amplitude is given.", examples=["tip"]
     )
     direction: Axis = Field(description="Direction of the amplitude.", examples=["x"])
+
+
+class ModeDisplacement(Mode):
+    """A displacement in the shape of a mode."""
+
     amplitude_m: Amplitude = Field(
         description="Displacement of the point along the direction.", examples=[1.0e-3]
     )
 
 
-class ModeVelocity(Section):
+class ModeVelocity(Mode):
     """A velocity in the shape of a mode."""
 
-    kind: Literal["mode"] = Field(description="This kind of field.", examples=["mode"])
-    number: Mode_number = Field(description=NUMBER, examples=[1])
-    point: Name = Field(
-        description="Named point at which the amplitude is given.", examples=["tip"]
-    )
-    direction: Axis = Field(description="Direction of the amplitude.", examples=["x"])
     amplitude_m_per_s: Amplitude = Field(
         description="Velocity of the point along the direction.", examples=[0.1]
     )
@@ -103,7 +102,7 @@ class PlacesDisplacement(Section):
     arc length between them. At a clamped end the spline has no slope.
     """
 
-    kind: Literal["places"] = Field(description="This kind of field.", examples=["places"])
+    kind: Literal["places"] = Field(description="This kind of field.")
     values: Annotated[tuple[PlaceDisplacement, ...], Field(min_length=2)] = Field(
         description="The values, the first at the start of the tube, the last at its end."
     )
@@ -114,7 +113,7 @@ class PlacesVelocity(Section):
     length between them. At a clamped end the spline has no slope.
     """
 
-    kind: Literal["places"] = Field(description="This kind of field.", examples=["places"])
+    kind: Literal["places"] = Field(description="This kind of field.")
     values: Annotated[tuple[PlaceVelocity, ...], Field(min_length=2)] = Field(
         description="The values, the first at the start of the tube, the last at its end."
     )
@@ -153,11 +152,9 @@ class Initial(Section):
         0.0,
         description="Initial displacement of the base along the direction of the base motion. Used"
         " if excitation.obstacles is `fixed`.",
-        examples=[0.0],
     )
     base_velocity_m_per_s: Number = Field(
         0.0,
         description="Initial velocity of the base along the direction of the base motion. Used"
         " if excitation.obstacles is `fixed`.",
-        examples=[0.0],
     )

@@ -1,18 +1,17 @@
-"""The checks of the initial state. Each yields (place, value, text), see checks."""
+"""The checks of the initial state."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from vibroimpact.geometry.centreline import LOCATION_TOLERANCE_M
 
 from .geometry_checks import centreline_of, off_the_tube
 from .initial import Initial
+from .key_problem import Problem, Problems
 from .name_checks import TUBES, names_of_points
 from .structure import Path, Structure, UTube
-
-Problems = Iterator[tuple[str, Any, str]]
 
 
 def initial_fields(
@@ -22,27 +21,28 @@ def initial_fields(
     if structure.kind in (*TUBES, "identified") and (
         initial.displacement_m or initial.velocity_m_per_s
     ):
-        yield (
+        yield Problem(
             "initial",
-            "given",
             "sets dofs of a chain or of matrices: give initial.displacement or initial.velocity,"
             " a field (on a tube rigid, mode or places; of measured modes mode)",
+            "given",
         )
     for key, values in (("displacement", "displacement_m"), ("velocity", "velocity_m_per_s")):
         field, place = getattr(initial, key), f"initial.{key}"
         if field is None:
             continue
         if getattr(initial, values):
-            yield place, field.kind, f"is given together with initial.{values}: give one of them"
+            yield Problem(
+                place, f"is given together with initial.{values}: give one of them", field.kind
+            )
         if field.kind == "mode":
             names = names_of_points(structure, points)
             if field.point not in names:
                 known = ", ".join(names) or "none"
-                yield f"{place}.point", field.point, f"is not a named point: known are {known}"
+                yield Problem(f"{place}.point", f"is not a named point: known are {known}")
         elif not isinstance(structure, UTube | Path):
-            yield (
+            yield Problem(
                 f"{place}.kind",
-                field.kind,
                 f"is for tubes, structure.kind is {structure.kind}: give initial.{values}, or mode",
             )
         elif field.kind == "places":
@@ -65,17 +65,15 @@ def _places(structure: UTube | Path, place: str, values: Sequence[Any]) -> Probl
     lengths = [centreline.locate(value.at_m, place) for value in values]
     for index, (before, after) in enumerate(zip(lengths[:-1], lengths[1:], strict=True), start=1):
         if after <= before:
-            yield (
+            yield Problem(
                 f"{place}[{index}].at_m",
-                list(values[index].at_m),
                 "is not after the place before it on the tube: give them from start to end",
             )
     for index, length, end in ((0, lengths[0], 0.0), (-1, lengths[-1], centreline.length)):
         if abs(length - end) > LOCATION_TOLERANCE_M:
             name = "start" if index == 0 else "end"
             position = [round(float(x), 4) for x in centreline.position(end)]
-            yield (
+            yield Problem(
                 f"{place}[{index % len(values)}].at_m",
-                list(values[index].at_m),
                 f"is not the {name} of the tube: add a value there, at {position}",
             )

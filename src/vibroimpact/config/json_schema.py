@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
-from pydantic_core import core_schema
+from pydantic_core import core_schema, to_jsonable_python
 
-from .declared_keys import meaning_of, unit_of
+from .declared_keys import examples_of, meaning_of, unit_of
 from .schema import Config
 
 
@@ -25,19 +25,21 @@ def json_schema() -> dict[str, Any]:
 
 
 class _WithUnits(GenerateJsonSchema):
-    """Pydantic's JSON schema with units of keys and without the titles it makes of their names."""
+    """Pydantic's JSON schema with units and examples of keys, no titles."""
 
     def field_title_should_be_set(self, schema: Any) -> bool:
         """Return False: a title made of the key's name says nothing new."""
         return False
 
     def model_schema(self, schema: core_schema.ModelSchema) -> JsonSchemaValue:
-        """Return the JSON schema of a section, with the unit of each key."""
+        """Return the JSON schema of a section, with the unit and the examples of each key."""
         section = super().model_schema(schema)
         section.pop("title", None)
         section["description"] = meaning_of(schema["cls"])
         for name, field in schema["cls"].model_fields.items():
-            unit = unit_of(name, field)
-            if unit:
-                section["properties"][name]["unit"] = unit
+            key = section["properties"][name]
+            if unit := unit_of(name, field):
+                key["unit"] = unit
+            if examples := examples_of(field):
+                key["examples"] = to_jsonable_python(examples)
         return section

@@ -134,9 +134,7 @@ class MeasuredStructure(Section):
     left out: the records then decide.
     """
 
-    kind: Literal["identified"] = Field(
-        description="This kind of structure, without `modes`.", examples=["identified"]
-    )
+    kind: Literal["identified"] = Field(description="This kind of structure, without `modes`.")
     band_Hz: Band | None = Field(
         None,
         description="Band in which modes are identified and responses compared. Default: the"

@@ -1,22 +1,18 @@
-"""The checks of names: every point, element and support that a configuration names is there. Each
-yields (place, value, text), see checks.
-"""
+"""The checks of names: every point, element and support that a configuration names is there."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from difflib import get_close_matches
 from typing import Any
 
 import numpy as np
 
 from .excitation import Excitation
+from .key_problem import Problem, Problems, near_or_known
 from .schema import Identification, RecordKeys
 from .structure import Structure
 from .supports import LocalElement, PointMass, Support
-
-Problems = Iterator[tuple[str, Any, str]]
 
 TUBES = ("u_tube", "path")
 
@@ -28,7 +24,7 @@ def names_twice(
     for kind, entries in (("supports", supports), ("elements", elements), ("masses", masses)):
         for name, times in Counter(entry.name for entry in entries).items():
             if times > 1:
-                yield kind, name, f"names {times} {kind}: give each a name of its own"
+                yield Problem(kind, f"names {times} {kind}: give each a name of its own", name)
 
 
 def drag_partners(elements: Sequence[LocalElement]) -> Problems:
@@ -39,9 +35,8 @@ def drag_partners(elements: Sequence[LocalElement]) -> Problems:
             element.drag_partner == element.name or names.count(element.drag_partner) != 1
         ):
             others = ", ".join(name for name in names if name != element.name)
-            yield (
+            yield Problem(
                 f"elements[{index}].drag_partner",
-                element.drag_partner,
                 f"is not one other element: give one of {others or 'none, there is no other'}",
             )
 
@@ -99,10 +94,8 @@ def _unknown(
     names = names_of_points(structure, points)
     for place, name in named:
         if name not in names:
-            close = get_close_matches(name, names, n=1)
-            known = f"known are {', '.join(names)}" if names else "points is empty, add it there"
-            remedy = f"did you mean '{close[0]}'?" if close else known
-            yield place, name, f"is not one of the named points: {remedy}"
+            remedy = near_or_known(name, names) if names else "points is empty, add it there"
+            yield Problem(place, f"is not one of the named points: {remedy}")
 
 
 def names_of_points(structure: Structure, points: Mapping[str, Sequence[float]]) -> list[str]:
@@ -139,7 +132,7 @@ def identified_points(record: RecordKeys, identification: Identification) -> Pro
     ]
     for place, name in named:
         if record.sensors is None or name not in record.sensors.points:
-            yield place, name, "is not recorded: add it to record.sensors.points"
+            yield Problem(place, "is not recorded: add it to record.sensors.points")
 
 
 def identification_needs(
@@ -153,34 +146,28 @@ def identification_needs(
     force.
     """
     if not supports:
-        yield (
+        yield Problem(
             "identification",
-            "given",
             "looks for the equivalent support, and there are no supports: leave identification out",
+            "given",
         )
     if structure.kind not in TUBES:
-        yield (
+        yield Problem(
             "identification",
+            f"reads the equivalent support of a tube, structure.kind is {structure.kind}: leave"
+            " identification out",
             "given",
-            (
-                f"reads the equivalent support of a tube, structure.kind is {structure.kind}: leave"
-                " identification out"
-            ),
         )
     elif excitation.kind not in ("band_limited", "measured", "turbulence"):
-        yield (
+        yield Problem(
             "identification",
+            f"needs a broadband force, excitation.kind is {excitation.kind}: leave"
+            " identification out",
             "given",
-            (
-                f"needs a broadband force, excitation.kind is {excitation.kind}: leave"
-                " identification out"
-            ),
         )
     if record.every_step:
-        yield (
-            "record.every_step",
-            True,
-            "keeps no spectra to identify from: leave identification out",
+        yield Problem(
+            "record.every_step", "keeps no spectra to identify from: leave identification out"
         )
 
 
@@ -196,11 +183,9 @@ def grouped_supports_are_there(
         for place, name in enumerate(group):
             key = f"identification.groups[{index}][{place}]"
             if name not in names:
-                close = get_close_matches(name, names, n=1)
-                remedy = f"did you mean '{close[0]}'?" if close else f"known are {', '.join(names)}"
-                yield key, name, f"is no support: {remedy}"
+                yield Problem(key, f"is no support: {near_or_known(name, names)}")
             elif name in taken:
-                yield key, name, f"is in group {taken[name]} already: a support is in one group"
+                yield Problem(key, f"is in group {taken[name]} already: a support is in one group")
             taken.setdefault(name, index)
 
 
@@ -208,10 +193,10 @@ def point_supports(structure: Structure, supports: Sequence[Support]) -> Problem
     """Yield a problem unless supports of a structure other than a tube are at its points."""
     for index, support in enumerate(supports):
         if support.point is None or support.at_m is not None:
-            yield (
+            yield Problem(
                 f"supports[{index}]",
-                support.name,
                 f"is on a structure of kind {structure.kind}: give point, and no at_m",
+                support.name,
             )
 
 
@@ -221,10 +206,10 @@ def same_stop_twice(structure: Structure, supports: Sequence[Support]) -> Proble
     for index, support in enumerate(supports):
         for other in known:
             if support.model_copy(update={"name": other.name}) == other:
-                yield (
+                yield Problem(
                     f"supports[{index}]",
-                    support.name,
                     f"is '{other.name}' again: leave it out, or add up the stiffness of the two",
+                    support.name,
                 )
         known.append(support)
 
@@ -232,11 +217,10 @@ def same_stop_twice(structure: Structure, supports: Sequence[Support]) -> Proble
 def places_of_points(structure: Structure, points: Mapping[str, Sequence[float]]) -> Problems:
     """Yield a problem unless places are those of points that a structure other than a tube has."""
     names = names_of_points(structure, points)
-    for name, place in points.items():
+    for name in points:
         if name not in names:
-            yield (
+            yield Problem(
                 f"points.{name}",
-                list(place),
                 f"is the place of no named point of the structure: known are {', '.join(names)}",
             )
 
@@ -248,23 +232,24 @@ def chain_names(structure: Structure) -> Problems:
     names = [mass.name for mass in structure.masses]
     for name, times in Counter(names).items():
         if times > 1:
-            yield "structure.masses", name, f"names {times} masses: give each a name of its own"
+            yield Problem(
+                "structure.masses", f"names {times} masses: give each a name of its own", name
+            )
     if "ground" in names:
         place = f"structure.masses[{names.index('ground')}].name"
-        yield place, "ground", "is the name of the earth in springs: give the mass another name"
+        yield Problem(place, "is the name of the earth in springs: give the mass another name")
     for index, spring in enumerate(structure.springs):
         if len(set(spring.between)) == 1:
-            yield (
+            yield Problem(
                 f"structure.springs[{index}].between",
-                list(spring.between),
                 "joins one place to itself, it has no effect: give two masses, or one and ground",
             )
         for end in spring.between:
             if end not in (*names, "ground"):
-                yield (
+                yield Problem(
                     f"structure.springs[{index}].between",
-                    end,
                     f"is no mass: give one of {', '.join(names)}, or ground",
+                    end,
                 )
 
 
@@ -275,25 +260,22 @@ def sensors(record: RecordKeys) -> Problems:
     for key, row in (("points", record.sensors.points), ("directions", record.sensors.directions)):
         for name, times in Counter(row).items():
             if times > 1:
-                yield f"record.sensors.{key}", name, f"stands {times} times: give each once"
+                yield Problem(
+                    f"record.sensors.{key}", f"stands {times} times: give each once", name
+                )
 
 
 def sensors_of_a_tube(structure: Structure, record: RecordKeys) -> Problems:
     """Yield a problem unless a tube has sensors, the shape line among their directions."""
     if record.sensors is None:
-        yield (
-            "record.sensors",
-            None,
-            "is needed on a tube: name the points and directions to record",
+        yield Problem(
+            "record.sensors", "is needed on a tube: name the points and directions to record"
         )
     elif record.shape_line.direction not in record.sensors.directions:
-        yield (
+        yield Problem(
             "record.shape_line.direction",
-            record.shape_line.direction,
-            (
-                "is not a direction of the sensors: add it to record.sensors.directions"
-                f" {list(record.sensors.directions)}"
-            ),
+            "is not a direction of the sensors: add it to record.sensors.directions"
+            f" {list(record.sensors.directions)}",
         )
 
 
@@ -306,9 +288,8 @@ def driven_direction_is_recorded(
     driven = "xyz"[int(np.argmax(np.abs(excitation.direction)))]
     across = structure.kind == "chain" and driven != "x"  # then the model says that nothing moves
     if record.sensors is not None and not across and driven not in record.sensors.directions:
-        yield (
+        yield Problem(
             "record.sensors.directions",
-            list(record.sensors.directions),
             f"lacks '{driven}', the direction of the force, which figures and estimates read: add"
             " it",
         )

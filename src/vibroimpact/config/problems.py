@@ -7,12 +7,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import date
-from difflib import get_close_matches
 from typing import Any
 
 from pydantic.fields import FieldInfo
 
 from .declared_keys import declared, kind_of, members, sections_in
+from .key_problem import near_or_known
 from .quantities import NOT_GIVEN, Section
 from .schema import Config
 
@@ -57,10 +57,9 @@ def sentence(error: Mapping[str, Any], data: Any, whole: type[Section] = Config)
     path, value = found.path, found.value
     place = _place(path)
     if error["type"] == UNKNOWN:
-        close = get_close_matches(str(error["loc"][-1]), found.keys, n=1)
-        remedy = f"did you mean '{close[0]}'?" if close else f"known are {', '.join(found.keys)}"
-        parent = _place(path[:-1])
-        return f"unknown key '{error['loc'][-1]}'{f' in {parent}' if parent else ''}: {remedy}"
+        key, parent = error["loc"][-1], _place(path[:-1])
+        remedy = near_or_known(str(key), found.keys)
+        return f"unknown key '{key}'{f' in {parent}' if parent else ''}: {remedy}"
     if error["type"] == "missing":
         return f"{place} is missing: {_wanted(str(path[-1]), found.keys[path[-1]])}"
     if error["type"] == "invalid_key":

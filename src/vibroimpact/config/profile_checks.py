@@ -1,12 +1,9 @@
-"""The checks of the profiles of supports: allowed contact and preload, places of their lands. Each
-yields (place, value, text), see checks.
-"""
+"""The checks of the profiles of supports: allowed contact and preload, places of their lands."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -14,12 +11,11 @@ from vibroimpact.geometry.centreline import Centreline
 from vibroimpact.geometry.directions import unit_vector
 
 from .geometry_checks import centreline_of, off_the_tube
+from .key_problem import Problem, Problems
 from .profiles import Bars, Broached, Lattice, Planes, has_flat_lands
 from .quantities import Vector
 from .structure import Path, Structure, UTube
 from .supports import Support
-
-Problems = Iterator[tuple[str, Any, str]]
 
 SAME_DEG = 1e-6
 ACROSS_DEG = 2.0  # a normal given with a few digits may be this far off the plane across the tube
@@ -30,9 +26,8 @@ def gaps_of_supports(structure: Structure, supports: Sequence[Support]) -> Probl
     for index, support in enumerate(supports):
         flat = has_flat_lands(support.profile)
         if support.gap_m is not None and support.gap_m <= 0.0 and not flat:
-            yield (
+            yield Problem(
                 f"supports[{index}].gap_m",
-                support.gap_m,
                 "must be > 0 round a centre: only flat stops (profile planes, bars, lattice or flat"
                 " lands) may touch or press",
             )
@@ -45,19 +40,15 @@ def preloads(supports: Sequence[Support]) -> Problems:
             continue
         place = f"supports[{index}].preload_N"
         if not has_flat_lands(support.profile):
-            yield (
+            yield Problem(
                 place,
-                support.preload_N,
                 f"needs flat lands to press with, the profile is {support.profile.kind}: use bars",
             )
         if support.gap_m is not None:
-            yield (
+            yield Problem(
                 place,
-                support.preload_N,
-                (
-                    f"is given together with gap_m = {support.gap_m:g}, both set the preload:"
-                    " give one of them"
-                ),
+                f"is given together with gap_m = {support.gap_m:g}, both set the preload:"
+                " give one of them",
             )
 
 
@@ -76,13 +67,13 @@ def profile_normals(structure: Structure, supports: Sequence[Support]) -> Proble
         if not isinstance(profile, Broached | Bars | Lattice):
             continue
         if isinstance(profile, Lattice) and profile.spacing_m > 0.0 and not tube:
-            yield f"{place}.spacing_m", profile.spacing_m, "is for tubes: leave it out"
+            yield Problem(f"{place}.spacing_m", "is for tubes: leave it out")
         if (profile.normal is None) == (profile.angle_deg is None):
             given = "neither" if profile.normal is None else "both"
-            yield (
+            yield Problem(
                 place,
-                profile.kind,
                 f"has {given} of normal and angle_deg: give one, the direction of its first land",
+                profile.kind,
             )
         elif profile.normal is not None:
             yield from _across(centreline, f"{place}.normal", profile.normal, support.at_m)
@@ -92,15 +83,10 @@ def _extra_gaps(place: str, profile: Planes, support: Support) -> Problems:
     """Yield a problem unless there is an extra gap for each stop, and no preload."""
     given, stops = len(profile.extra_gap_m), len(profile.normals_deg)
     if given not in (0, stops):
-        yield (
-            place,
-            list(profile.extra_gap_m),
-            f"has {given} values for {stops} stops: give one each",
-        )
+        yield Problem(place, f"has {given} values for {stops} stops: give one each")
     if given and support.preload_N is not None:
-        yield (
+        yield Problem(
             place,
-            list(profile.extra_gap_m),
             f"is given together with preload_N = {support.preload_N:g}, which presses every stop:"
             " give gap_m, which may be negative, in place of preload_N",
         )
@@ -112,9 +98,8 @@ def _stops_twice(place: str, normals_deg: Sequence[float]) -> Problems:
         if any(
             abs((angle - other + 180.0) % 360.0 - 180.0) < SAME_DEG for other in normals_deg[:index]
         ):
-            yield (
+            yield Problem(
                 f"{place}[{index}]",
-                angle,
                 "is a stop that is there already: leave it out, or raise stiffness_N_per_m",
             )
 
@@ -141,11 +126,8 @@ def _across(
         if np.linalg.norm(across) > 1.0e-6
         else "give a direction across it"
     )
-    yield (
+    yield Problem(
         place,
-        list(normal),
-        (
-            f"is {math.degrees(math.asin(min(1.0, abs(along)))):.1f} degrees off the plane across"
-            f" {where} {np.round(tangent, 4).tolist()} there: {remedy}"
-        ),
+        f"is {math.degrees(math.asin(min(1.0, abs(along)))):.1f} degrees off the plane across"
+        f" {where} {np.round(tangent, 4).tolist()} there: {remedy}",
     )

@@ -40,13 +40,13 @@ def _normal(what: str) -> Any:
 class Circular(Section):
     """A circular obstacle: contact begins when the distance from its centre exceeds the gap."""
 
-    kind: Literal["circular"] = Field(description="This kind of profile.", examples=["circular"])
+    kind: Literal["circular"] = Field(description="This kind of profile.")
 
 
 class Drilled(Section):
     """A drilled hole: another name of `circular`."""
 
-    kind: Literal["drilled"] = Field(description="This kind of profile.", examples=["drilled"])
+    kind: Literal["drilled"] = Field(description="This kind of profile.")
 
 
 class Planes(Section):
@@ -55,7 +55,7 @@ class Planes(Section):
     obstacle's centre. One stop alone is one-sided.
     """
 
-    kind: Literal["planes"] = Field(description="This kind of profile.", examples=["planes"])
+    kind: Literal["planes"] = Field(description="This kind of profile.")
     normals_deg: Annotated[tuple[Number, ...], Not_empty] = Field(
         description="Directions of the stops as seen from the obstacle's centre, one angle each."
         " Angles count from the support's first transverse direction (0) towards the second (90): a"
@@ -77,7 +77,7 @@ class Lobes(Section):
     transverse direction towards the second. The force is normal to this profile.
     """
 
-    kind: Literal["lobes"] = Field(description="This kind of profile.", examples=["lobes"])
+    kind: Literal["lobes"] = Field(description="This kind of profile.")
     count: Annotated[Whole, Range("a quadrifoil has 4", at_least=2, at_most=24)] = Field(
         description="Number of lands, the places of the smallest R: 3 for a trefoil, 4 for a"
         " quadrifoil.",
@@ -102,7 +102,7 @@ class Broached(Section):
     given. Give normal or angle_deg.
     """
 
-    kind: Literal["broached"] = Field(description="This kind of profile.", examples=["broached"])
+    kind: Literal["broached"] = Field(description="This kind of profile.")
     lands: Annotated[
         Whole, Range("a trefoil has 3 lands, a quadrifoil 4", at_least=3, at_most=24)
     ] = Field(description="Number of lands.", examples=[4])
@@ -123,14 +123,13 @@ class Bars(Section):
     normal or angle_deg.
     """
 
-    kind: Literal["bars"] = Field(description="This kind of profile.", examples=["bars"])
+    kind: Literal["bars"] = Field(description="This kind of profile.")
     normal: Direction | None = _normal("Direction of the bar that limits motion in its sense")
     angle_deg: Number | None = _angle("Direction of the bar that limits motion in its sense")
     sides: Literal["both", "one"] = Field(
         "both",
         description="`both` for a pair of bars on opposite sides of the tube, each at the gap, or"
         " `one` for the single bar in the direction given.",
-        examples=["both"],
     )
 
 
@@ -139,7 +138,7 @@ class Lattice(Section):
     angle_deg.
     """
 
-    kind: Literal["lattice"] = Field(description="This kind of profile.", examples=["lattice"])
+    kind: Literal["lattice"] = Field(description="This kind of profile.")
     normal: Direction | None = _normal("Normal of the first pair of bars")
     angle_deg: Number | None = _angle("Normal of the first pair of bars")
     spacing_m: Non_negative = Field(

@@ -9,12 +9,12 @@ import os
 import re
 from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
-from typing import Annotated, Any
+from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
-from pydantic.fields import FieldInfo
 
 from .checks import cross_problems
+from .declared_keys import annotation_of
 from .problems import UNKNOWN, ConfigError, follows, path_in, sentence, shown
 from .schema import Config
 from .yaml_file import read_yaml
@@ -65,7 +65,7 @@ def check_config(data: dict[str, Any], source: str) -> Config:
         problems += [sentence(each, read) for each in errors]
         mended = _mended(read, errors)
     between = cross_problems(sections)
-    problems += [f"{place} = {shown(value)} {text}" for place, value, text in between]
+    problems += [f"{each.place} = {shown(each.value)} {each.text}" for each in between]
     if problems or config is None:
         told = [f"{source}: {problem}" for problem in dict.fromkeys(problems)]
         raise ConfigError(told, None if between else config)
@@ -79,7 +79,7 @@ def _valid_sections(data: dict[str, Any], invalid: set) -> dict[str, Any]:
     sections = {}
     for name, field in Config.model_fields.items():
         if name in data and name not in invalid:
-            sections[name] = TypeAdapter(_annotation(field)).validate_python(data[name])
+            sections[name] = TypeAdapter(annotation_of(field)).validate_python(data[name])
         elif name not in data and not field.is_required():
             sections[name] = field.get_default()
     return sections
@@ -106,9 +106,3 @@ def _mended(data: dict[str, Any], errors: Sequence[Mapping[str, Any]]) -> dict[s
         if isinstance(given, str) and (meant := get_close_matches(given, known, 1)):
             level[path[-1]], mended = meant[0], True
     return copied if mended else None
-
-
-def _annotation(field: FieldInfo) -> Any:
-    """Return the full type of a field: pydantic keeps the contents of Annotated apart."""
-    extras = [*field.metadata] + ([field] if field.discriminator else [])
-    return Annotated[(field.annotation, *extras)] if extras else field.annotation

@@ -1,10 +1,7 @@
-"""The checks of a tube's cross-section and of the fluids inside and outside it. Each yields
-(place, value, text), see checks.
-"""
+"""The checks of a tube's cross-section and of the fluids inside and outside it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -12,13 +9,11 @@ import numpy as np
 from vibroimpact.geometry.centreline import SAME_PLACE_M
 from vibroimpact.geometry.sections import ROUND, outer_width, section_properties
 
-from .geometry_checks import centreline_of, off_the_tube
+from .geometry_checks import Tube, centreline_of, ends_off_the_tube
+from .key_problem import Problem, Problems
 from .schema import RecordKeys
-from .structure import Path, Structure, UTube
+from .structure import Structure
 from .wear import Wear
-
-Problems = Iterator[tuple[str, Any, str]]
-Tube = UTube | Path
 
 CROSS = 1e-3  # sine of the least angle between the first axis of a section and the tube
 
@@ -27,9 +22,8 @@ def wall(structure: Tube) -> Problems:
     """Yield a problem unless the wall is thinner than the radius."""
     section = structure.section
     if section.kind == "tube" and section.wall_thickness_m >= section.outer_diameter_m / 2:
-        yield (
+        yield Problem(
             "structure.section.wall_thickness_m",
-            section.wall_thickness_m,
             f"must be below half the outer diameter {section.outer_diameter_m}: both in metres?",
         )
 
@@ -37,13 +31,15 @@ def wall(structure: Tube) -> Problems:
 def wall_that_wears(structure: Structure, wear: Wear) -> Problems:
     """Yield a problem unless the structure has the wall of a tube."""
     if getattr(getattr(structure, "section", None), "kind", "none") != "tube":
-        yield "wear", "...", "is of the wall of a tube, this structure has none: leave it out"
+        yield Problem(
+            "wear", "is of the wall of a tube, this structure has none: leave it out", "..."
+        )
 
 
 def wear_needs_statistics(record: RecordKeys, wear: Wear) -> Problems:
     """Yield a problem if records hold single steps, which have no work rates."""
     if record.every_step:
-        yield "record.every_step", True, "gives no wear work rate: leave it out, or wear"
+        yield Problem("record.every_step", "gives no wear work rate: leave it out, or wear")
 
 
 def axes_of_the_section(structure: Tube) -> Problems:
@@ -54,9 +50,8 @@ def axes_of_the_section(structure: Tube) -> Problems:
         return
     tangent = centreline.direction(0.0)
     if np.linalg.norm(np.cross(axis, tangent)) <= CROSS * np.linalg.norm(axis):
-        yield (
+        yield Problem(
             "structure.section.first_axis",
-            list(axis),
             f"is along the tube at its start, {np.round(tangent, 4).tolist()}: give a direction"
             " across it",
         )
@@ -68,9 +63,8 @@ def enclosed_area(structure: Tube) -> Problems:
     if section.kind != "general" or section.enclosed_area_m2 is None:
         return
     if section.enclosed_area_m2 < section.area_m2:
-        yield (
+        yield Problem(
             "structure.section.enclosed_area_m2",
-            section.enclosed_area_m2,
             f"is below the area of the material, {section.area_m2:g} m2: it includes both material"
             " and hollow",
         )
@@ -85,21 +79,16 @@ def fluids(structure: Tube) -> Problems:
     for index, fluid in enumerate(structure.fluid):
         place = f"structure.fluid[{index}]"
         yield from _fits(structure, fluid, place)
-        off = [
-            problem
-            for key in ("from_m", "to_m")
-            if getattr(fluid, key) is not None
-            for problem in off_the_tube(centreline, f"{place}.{key}", getattr(fluid, key))
-        ]
+        off = [*ends_off_the_tube(centreline, place, fluid)]
         yield from off
         if off:
             continue
         low, high = centreline.stretch(fluid.from_m, fluid.to_m, place)
         if high - low <= SAME_PLACE_M:
-            yield f"{place}.to_m", fluid.to_m, "is the start of the fluid: give another position"
+            yield Problem(f"{place}.to_m", "is the start of the fluid: give another position")
         for side, other_low, other_high in taken:
             if side == fluid.kind and low < other_high and other_low < high:
-                yield place, fluid.kind, f"overlaps another fluid {side}: give them apart"
+                yield Problem(place, f"overlaps another fluid {side}: give them apart", fluid.kind)
         taken.append((fluid.kind, low, high))
 
 
@@ -108,9 +97,8 @@ def _fits(structure: Tube, fluid: Any, place: str) -> Problems:
     section = structure.section
     if fluid.kind == "inside":
         if section_properties(section, structure.material.poisson_ratio or 0.0).inner_area <= 0.0:
-            yield (
+            yield Problem(
                 f"{place}.kind",
-                "inside",
                 f"needs a hollow section, and a section of kind {section.kind} is solid: leave it"
                 " out",
             )
@@ -119,17 +107,15 @@ def _fits(structure: Tube, fluid: Any, place: str) -> Problems:
     if confinement.kind == "coefficient":
         return
     if section.kind not in ROUND:
-        yield (
+        yield Problem(
             f"{place}.confinement.kind",
-            confinement.kind,
             f"is for round sections: give a section of kind {section.kind} kind coefficient with"
             " an added_mass_coefficient",
         )
         return
     key = {"bundle": "pitch_m", "annulus": "equivalent_diameter_m"}.get(confinement.kind)
     if key is not None and getattr(confinement, key) <= outer_width(section):
-        yield (
+        yield Problem(
             f"{place}.confinement.{key}",
-            getattr(confinement, key),
             f"must be above the diameter of the tube, {outer_width(section):g} m",
         )

@@ -46,7 +46,6 @@ class Mesh(Section):
         20,
         description="Elements of each stretch of a straight segment between segment ends and"
         " support edges.",
-        examples=[20],
     )
     elements_per_bend: Annotated[
         Whole, Range("80 elements per bend is the stated mesh", at_least=1, at_most=2000)
@@ -54,32 +53,31 @@ class Mesh(Section):
         80,
         description="Elements of each bend. If supports cut the bend, its parts share the"
         " elements by length.",
-        examples=[80],
     )
 
 
 class Clamped(Section):
     """An end that neither moves nor rotates."""
 
-    kind: Literal["clamped"] = Field(description="This kind of end.", examples=["clamped"])
+    kind: Literal["clamped"] = Field(description="This kind of end.")
 
 
 class Pinned(Section):
     """An end that does not move and does not twist, but bends freely."""
 
-    kind: Literal["pinned"] = Field(description="This kind of end.", examples=["pinned"])
+    kind: Literal["pinned"] = Field(description="This kind of end.")
 
 
 class Free(Section):
     """An end that is free."""
 
-    kind: Literal["free"] = Field(description="This kind of end.", examples=["free"])
+    kind: Literal["free"] = Field(description="This kind of end.")
 
 
 class Springs(Section):
     """An end on springs that are equal in all three directions."""
 
-    kind: Literal["springs"] = Field(description="This kind of end.", examples=["springs"])
+    kind: Literal["springs"] = Field(description="This kind of end.")
     translation_N_per_m: Stiffness = Field(
         description="Stiffness against displacement, in each direction.", examples=[1.0e8]
     )
@@ -98,8 +96,8 @@ class UTube(Section):
     +bend_radius_m, the apex is on the z axis, and y is out of plane.
     """
 
-    kind: Literal["u_tube"] = Field(description="This kind of structure.", examples=["u_tube"])
-    theory: Theory = Field("timoshenko", description=THEORY, examples=["timoshenko"])
+    kind: Literal["u_tube"] = Field(description="This kind of structure.")
+    theory: Theory = Field("timoshenko", description=THEORY)
     section: Cross_section = Field(description="Cross-section of the tube.")
     material: Material = Field(description="Material of the tube.")
     fluid: Fluids = Field((), description=FLUID)
@@ -118,14 +116,14 @@ class UTube(Section):
 class Straight(Section):
     """A straight segment of a path."""
 
-    kind: Literal["straight"] = Field(description="This kind of segment.", examples=["straight"])
+    kind: Literal["straight"] = Field(description="This kind of segment.")
     length_m: Length_m = Field(description="Length.", examples=[1.0])
 
 
 class Bend(Section):
     """A circular arc of a path. It begins along the tangent of the segment before it."""
 
-    kind: Literal["bend"] = Field(description="This kind of segment.", examples=["bend"])
+    kind: Literal["bend"] = Field(description="This kind of segment.")
     radius_m: Length_m = Field(description="Radius of the centreline.", examples=[0.2])
     angle_deg: Angle_deg = Field(description="Angle of the arc.", examples=[90.0])
     toward: Direction = Field(
@@ -140,8 +138,8 @@ class Path(Section):
     tangent.
     """
 
-    kind: Literal["path"] = Field(description="This kind of structure.", examples=["path"])
-    theory: Theory = Field("timoshenko", description=THEORY, examples=["timoshenko"])
+    kind: Literal["path"] = Field(description="This kind of structure.")
+    theory: Theory = Field("timoshenko", description=THEORY)
     section: Cross_section = Field(description="Cross-section of the tube.")
     material: Material = Field(description="Material of the tube.")
     fluid: Fluids = Field((), description=FLUID)
@@ -183,7 +181,7 @@ class Spring(Section):
 class Chain(Section):
     """Masses on a line along x. Each mass is a point of its name with the direction x."""
 
-    kind: Literal["chain"] = Field(description="This kind of structure.", examples=["chain"])
+    kind: Literal["chain"] = Field(description="This kind of structure.")
     masses: Annotated[tuple[Mass, ...], Not_empty] = Field(description="The masses.")
     springs: tuple[Spring, ...] = Field((), description="The springs and dampers.")
 
@@ -201,7 +199,7 @@ class Matrices(Section):
     size. Paths are relative to the folder in which the study is run.
     """
 
-    kind: Literal["matrices"] = Field(description="This kind of structure.", examples=["matrices"])
+    kind: Literal["matrices"] = Field(description="This kind of structure.")
     mass: str = Field(
         description="File of the mass matrix, in kg for displacements."
         + MATRIX_FILE.format(name="mass", letter="M", small="m", letter_op4="M"),
@@ -268,7 +266,6 @@ class MeasuredMode(Section):
         False,
         description="True for a mode that stands for the modes outside the measured band. Its"
         " frequency has no meaning by itself.",
-        examples=[False],
     )
 
 
@@ -277,9 +274,7 @@ class Identified(Section):
     its damping is that of the modes: the top-level `damping` is not used.
     """
 
-    kind: Literal["identified"] = Field(
-        description="This kind of structure.", examples=["identified"]
-    )
+    kind: Literal["identified"] = Field(description="This kind of structure.")
     modes: Annotated[tuple[MeasuredMode, ...], Not_empty] = Field(description="The modes.")
 
 
@@ -291,7 +286,7 @@ class ModalDamping(Section):
     frequencies.
     """
 
-    kind: Literal["modal"] = Field(description="This kind of damping.", examples=["modal"])
+    kind: Literal["modal"] = Field(description="This kind of damping.")
     first_ratios: tuple[Damping_ratio, ...] = Field(
         (),
         description="Damping ratios of the first modes, one each, as fractions. Rigid-body modes"
@@ -312,7 +307,7 @@ class ModalDamping(Section):
 class RayleighDamping(Section):
     """The damping matrix C = mass_coefficient_per_s M + stiffness_coefficient_s K."""
 
-    kind: Literal["rayleigh"] = Field(description="This kind of damping.", examples=["rayleigh"])
+    kind: Literal["rayleigh"] = Field(description="This kind of damping.")
     mass_coefficient_per_s: Coefficient = Field(
         description="Factor of the mass matrix M.", examples=[0.5]
     )

@@ -50,9 +50,7 @@ class Plate(Section):
         description="Stiffness of the plate in each transverse direction.", examples=[1.0e7]
     )
     damping_ratio: Damping_ratio = Field(
-        0.02,
-        description="Damping ratio of the plate on its spring, as a fraction.",
-        examples=[0.02],
+        0.02, description="Damping ratio of the plate on its spring, as a fraction."
     )
 
 
@@ -100,7 +98,7 @@ class Support(Section):
             at_least=1,
             at_most=200,
         ),
-    ] = Field(5, description="Number of contact points. Tubes only.", examples=[5])
+    ] = Field(5, description="Number of contact points. Tubes only.")
     point: Name | None = Field(
         None,
         description="Named point that the support is at. For structures that are no tube.",
@@ -177,7 +175,6 @@ class Support(Section):
         1.0,
         description="Stiffness of the elastic stick spring that regularises friction, as a multiple"
         " of the contact stiffness. Used if friction is not 0.",
-        examples=[1.0],
     )
     profile: Profile = Field(Circular(kind="circular"), description="Shape of the obstacle.")
     plate: Plate | None = Field(

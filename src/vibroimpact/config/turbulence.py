@@ -65,7 +65,7 @@ class Stretch(Ends):
 class FlatSpectrum(Section):
     """A one-sided PSD that is flat in the band."""
 
-    kind: Literal["flat"] = Field(description="This kind of spectrum.", examples=["flat"])
+    kind: Literal["flat"] = Field(description="This kind of spectrum.")
 
 
 class TableSpectrum(Section):
@@ -73,7 +73,7 @@ class TableSpectrum(Section):
     on two logarithmic axes.
     """
 
-    kind: Literal["table"] = Field(description="This kind of spectrum.", examples=["table"])
+    kind: Literal["table"] = Field(description="This kind of spectrum.")
     frequency_Hz: Annotated[tuple[Frequency_Hz, ...], Two_or_more] = Field(
         description="Frequencies, ascending. They cover the band.", examples=[[5.0, 50.0, 200.0]]
     )
@@ -87,15 +87,12 @@ class TubeBundleSpectrum(Section):
     computed with it (code_aster, DEFI_SPEC_TURB).
     """
 
-    kind: Literal["tube_bundle"] = Field(
-        description="This kind of spectrum.", examples=["tube_bundle"]
-    )
+    kind: Literal["tube_bundle"] = Field(description="This kind of spectrum.")
     shape: Literal["two_slopes", "low_pass"] = Field(
         "two_slopes",
         description="Dimensionless PSD over the reduced frequency fr = f D / V. Two slopes:"
         " 5e-3 / fr^0.5 up to 0.2, 4e-5 / fr^3.5 above. Low pass: 1.5e-3 / (1 + (fr / 0.1)^2.7)."
         " Both are two-sided; the one-sided PSD is twice as large.",
-        examples=["two_slopes"],
     )
     velocity_m_per_s: Velocity = Field(description=VELOCITY, examples=[2.0])
     fluid_density_kg_per_m3: Fluid_density = Field(description=DENSITY, examples=[750.0])
@@ -106,7 +103,7 @@ class TwoPhaseSpectrum(Section):
     with it (code_aster, DEFI_SPEC_TURB). The force falls with the square of the frequency.
     """
 
-    kind: Literal["two_phase"] = Field(description="This kind of spectrum.", examples=["two_phase"])
+    kind: Literal["two_phase"] = Field(description="This kind of spectrum.")
     void_fraction: Void_fraction = Field(
         description="Share of the volume that is steam.", examples=[0.8]
     )
@@ -124,9 +121,7 @@ class ReducedTableSpectrum(Section):
     diameter D of the tube.
     """
 
-    kind: Literal["reduced_table"] = Field(
-        description="This kind of spectrum.", examples=["reduced_table"]
-    )
+    kind: Literal["reduced_table"] = Field(description="This kind of spectrum.")
     reduced_frequency: Annotated[tuple[Reduced, ...], Two_or_more] = Field(
         description="Reduced frequencies, ascending. They cover the band.",
         examples=[[0.01, 0.2, 3.0]],
@@ -178,5 +173,4 @@ class TurbulentForce(Section):
         description="Largest share of the variance of a mode's force that may be left out. It sets"
         " the number of independent forces. A mode above the band counts less, by (upper end of the"
         " band / its frequency)^4; a variance below 1e-4 of the largest counts as that.",
-        examples=[0.01],
     )

@@ -1,24 +1,21 @@
-"""The checks of a turbulent force: its stretches, its direction, its band and its spectrum. Each
-yields (place, value, text), see checks.
-"""
+"""The checks of a turbulent force: its stretches, its direction, its band and its spectrum."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from vibroimpact.geometry.centreline import Centreline, build_centreline
+from vibroimpact.geometry.centreline import Centreline
 from vibroimpact.geometry.sections import outer_width
 
 from .excitation import Excitation
-from .geometry_checks import Tube, path_directions, points_on_the_tube
+from .geometry_checks import Tube, centreline_of, ends_off_the_tube
+from .key_problem import Problem, Problems
 from .structure import Structure
 from .turbulence import Ends
-
-Problems = Iterator[tuple[str, Any, str]]
 
 LEAST_SINE = 0.05  # of the angle between force and tube: 3 degrees
 ALONG_TUBE = 2000  # places at which the angle is looked at
@@ -28,9 +25,8 @@ TOLERANCE = 1e-9
 def needs_a_tube(structure: Structure, excitation: Excitation) -> Problems:
     """Yield a problem: turbulence acts along a tube, and this structure is none."""
     if excitation.kind == "turbulence":
-        yield (
+        yield Problem(
             "excitation.kind",
-            "turbulence",
             f"acts along a tube, structure.kind is {structure.kind}: use band_limited",
         )
 
@@ -43,30 +39,26 @@ def stretches(structure: Tube, excitation: Excitation) -> Problems:
 
 def stretches_of_flow(structure: Tube, given: Sequence[Any], section: str) -> Problems:
     """Yield a problem unless stretches of a section are on the tube and do not overlap."""
-    line = _centreline(structure)
+    line = centreline_of(structure)
     if line is None:
         return
     taken = []
     for index, stretch in enumerate(given):
         place = f"{section}.stretches[{index}]"
-        off = [*_off_the_tube(structure, stretch, place)]
+        off = [*ends_off_the_tube(line, place, stretch)]
         yield from off
         if off:
             continue
         begin, end = _ends(line, stretch)
         if end - begin < TOLERANCE:
-            yield (
-                f"{place}.to_m",
-                list(stretch.to_m),
-                "is the same place as from_m: move one of them",
-            )
+            yield Problem(f"{place}.to_m", "is the same place as from_m: move one of them")
         taken.append((begin, end, index))
     for (_, end, one), (begin, _, other) in pairwise(sorted(taken)):
         if begin < end - TOLERANCE:
-            yield (
+            yield Problem(
                 f"{section}.stretches[{other}]",
-                list(given[other].from_m),
                 f"overlaps stretches[{one}]: let one end at the start of the other",
+                list(given[other].from_m),
             )
 
 
@@ -78,13 +70,13 @@ def direction(structure: Tube, excitation: Excitation) -> Problems:
 
 def direction_of_flow(structure: Tube, flow: Any, section: str) -> Problems:
     """Yield a problem unless the direction of a section is across the tube wherever it acts."""
-    line = _centreline(structure)
+    line = centreline_of(structure)
     if line is None:
         return
     acting = [
         _ends(line, stretch)
         for stretch in flow.stretches
-        if not any(_off_the_tube(structure, stretch, ""))
+        if not any(ends_off_the_tube(line, "", stretch))
     ]
     along = np.asarray(flow.direction) / np.linalg.norm(flow.direction)
     for begin, end in acting if flow.stretches else [(0.0, line.length)]:
@@ -92,27 +84,12 @@ def direction_of_flow(structure: Tube, flow: Any, section: str) -> Problems:
         sines = [np.linalg.norm(np.cross(line.direction(place), along)) for place in places]
         if min(sines) < LEAST_SINE:
             at = line.position(places[int(np.argmin(sines))])
-            yield (
+            yield Problem(
                 f"{section}.direction",
-                list(flow.direction),
-                (
-                    f"is along the tube at {np.round(at, 4).tolist()} m: give a direction across"
-                    " the tube wherever the force acts, or stretches without that place"
-                ),
+                f"is along the tube at {np.round(at, 4).tolist()} m: give a direction across"
+                " the tube wherever the force acts, or stretches without that place",
             )
             return
-
-
-def _centreline(structure: Tube) -> Centreline | None:
-    """Return the centreline, or None if its directions are a problem already reported."""
-    return None if any(path_directions(structure)) else build_centreline(structure)
-
-
-def _off_the_tube(structure: Tube, stretch: Ends, place: str) -> Problems:
-    """Yield a problem for each end of a stretch that is off the tube."""
-    for key in ("from_m", "to_m"):
-        for _, value, text in points_on_the_tube(structure, {key: getattr(stretch, key)}):
-            yield f"{place}.{key}", value, text
 
 
 def _ends(line: Centreline, stretch: Ends) -> tuple[float, float]:
@@ -127,7 +104,7 @@ def band(excitation: Excitation) -> Problems:
         return
     low, high = excitation.band_Hz
     if low == 0.0:
-        yield "excitation.band_Hz", [low, high], "begins at 0: give a lower end above 0 Hz"
+        yield Problem("excitation.band_Hz", "begins at 0: give a lower end above 0 Hz")
 
 
 def points_of_spectrum(structure: Tube, excitation: Excitation) -> Problems:
@@ -146,23 +123,21 @@ def points_of_spectrum(structure: Tube, excitation: Excitation) -> Problems:
     yield from _points(f"excitation.spectrum.{key}", places, values)
     low, high = (scale * end for end in low_high)
     if places[0] > low * (1 + TOLERANCE) or places[-1] < high * (1 - TOLERANCE):
-        yield (
+        yield Problem(
             f"excitation.spectrum.{key}",
+            f"does not cover excitation.band_Hz, which is {low:.4g} to {high:.4g} on this axis:"
+            " narrow the band or add points",
             [places[0], places[-1]],
-            (
-                f"does not cover excitation.band_Hz, which is {low:.4g} to {high:.4g} on this axis:"
-                " narrow the band or add points"
-            ),
         )
 
 
 def _points(place: str, places: Sequence[float], values: Sequence[float]) -> Problems:
     """Yield a problem unless points are ascending and have one value each."""
     if len(places) != len(values):
-        yield (
+        yield Problem(
             place,
-            len(places),
             f"places have {len(values)} values of the PSD: give one value per place",
+            len(places),
         )
     if any(after <= before for before, after in pairwise(places)):
-        yield place, list(places), "is not in ascending order: sort the points, each once"
+        yield Problem(place, "is not in ascending order: sort the points, each once")

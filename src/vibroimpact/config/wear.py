@@ -29,13 +29,11 @@ class Wear(Section):
     slowing: bool = Field(
         False, description="Whether the slowing law EDF_MZ is added.", examples=[True]
     )
-    years: Years = Field(40.0, description="Time in service.", examples=[40.0])
+    years: Years = Field(40.0, description="Time in service.")
     duty: Share = Field(
         1.0, description="Share of the time in service under the load.", examples=[0.9]
     )
-    wall_limit: Share = Field(
-        0.4, description="Share of the wall at which a tube is plugged.", examples=[0.4]
-    )
+    wall_limit: Share = Field(0.4, description="Share of the wall at which a tube is plugged.")
     tilt_deg: Annotated[Number, Range("give a small angle", at_least=0, at_most=45)] = Field(
         0.0, description="Tilt of flat lands and bars on the tube's axis.", examples=[1.0]
     )

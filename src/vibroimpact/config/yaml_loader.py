@@ -12,8 +12,7 @@ from collections.abc import Hashable
 from typing import Any, NoReturn
 
 import yaml
-from yaml.composer import ComposerError
-from yaml.constructor import ConstructorError
+from yaml.error import MarkedYAMLError
 from yaml.events import AliasEvent, CollectionStartEvent, ScalarEvent
 from yaml.nodes import MappingNode, Node, ScalarNode
 
@@ -37,7 +36,7 @@ class PlainLoader(yaml.SafeLoader):
         self._size_of: dict[int, int] = {}  # of complete nodes: values in them
 
     def compose_node(self, parent: Node | None, index: Any) -> Node | None:
-        """Return the next node, within the limits. Raises ComposerError."""
+        """Return the next node, within the limits. Raises MarkedYAMLError."""
         event = self.peek_event()
         mark = event.start_mark
         self._refuse_tag(event)
@@ -59,30 +58,24 @@ class PlainLoader(yaml.SafeLoader):
         return node
 
     def _refuse_tag(self, event: Any) -> None:
-        """Raise ComposerError for a node with a tag of its own."""
+        """Raise MarkedYAMLError for a node with a tag of its own."""
         if isinstance(event, (ScalarEvent, CollectionStartEvent)) and event.tag is not None:
             tag = event.tag.replace("tag:yaml.org,2002:", "!!")
             _refuse(f"{tag} is a tag, which no configuration needs: remove it", event.start_mark)
 
     def construct_object(self, node: Node, deep: bool = False) -> Any:
-        """Return the value of a node. Raises ConstructorError."""
+        """Return the value of a node. Raises MarkedYAMLError."""
         try:
             value = super().construct_object(node, deep)
         except ValueError as error:  # the 45th of a month, a number of 5000 digits
-            raise ConstructorError(
-                None,
-                None,
-                "a date or number that can not be read: correct it, or put a text in quotes",
-                node.start_mark,
-            ) from error
+            text = "a date or number that can not be read: correct it, or put a text in quotes"
+            raise MarkedYAMLError(problem=text, problem_mark=node.start_mark) from error
         if isinstance(value, str) and NO_TEXT.search(value):
-            raise ConstructorError(
-                None, None, "a text that can not be read: remove its escape (\\)", node.start_mark
-            )
+            _refuse("a text that can not be read: remove its escape (\\)", node.start_mark)
         return value
 
     def construct_mapping(self, node: MappingNode, deep: bool = False) -> dict:
-        """Return the mapping of a node. Raises ConstructorError."""
+        """Return the mapping of a node. Raises MarkedYAMLError."""
         given: set[Hashable] = set()
         for key_node, _ in node.value:
             if key_node.tag == MERGE:
@@ -91,18 +84,14 @@ class PlainLoader(yaml.SafeLoader):
             if not isinstance(key, Hashable):
                 continue  # the safe loader refuses it
             if key in given:
-                raise ConstructorError(
-                    None, None, f"key '{key}' is given twice", key_node.start_mark
-                )
+                _refuse(f"key '{key}' is given twice", key_node.start_mark)
             given.add(key)
         return super().construct_mapping(node, deep)
 
     def construct_decimal(self, node: ScalarNode) -> int | float:
-        """Return a number. Raises ConstructorError for one in base 8 or 60."""
+        """Return a number. Raises MarkedYAMLError for one in base 8 or 60."""
         if NO_DECIMAL.fullmatch(node.value):
-            raise ConstructorError(
-                None,
-                None,
+            _refuse(
                 f"{node.value} is ambiguous: write a number without leading 0 and colon, or put a"
                 " text in quotes",
                 node.start_mark,
@@ -112,7 +101,7 @@ class PlainLoader(yaml.SafeLoader):
 
 
 def _refuse(problem: str, mark: Any) -> NoReturn:
-    raise ComposerError(None, None, problem, mark)
+    raise MarkedYAMLError(problem=problem, problem_mark=mark)
 
 
 for kind in ("int", "float"):

@@ -63,8 +63,6 @@ def read_force(path: str | Path, variable: str, sampling_frequency: float | None
                 signal = _named(path, reader(path), variable)
             except ImportProblem as problem:
                 raise ForceFileError(str(problem)) from problem
-    except ForceFileError:
-        raise
     except ForeignFileError as error:
         raise ForceFileError(str(error)) from error
     values = _newtons(path, variable, signal)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import combinations
 from typing import Any
 
@@ -172,10 +173,11 @@ class _Held:
     tube: TubeInFlow
     stiffness: float | None
     damping: float
-    supports: list[SupportDirection] = field(init=False)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "supports", support_directions(self.tube.model, "each"))
+    @cached_property
+    def supports(self) -> list[SupportDirection]:
+        """Return each support in each direction that it acts in."""
+        return support_directions(self.tube.model, "each")
 
     def states(self, most: int) -> Iterator[tuple[str, ...]]:
         """Yield the names of supports that do not hold: none, then every combination."""

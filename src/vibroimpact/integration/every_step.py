@@ -1,6 +1,7 @@
 """Every step of a short run, unfiltered, at each contact point and local element."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +14,8 @@ from .kernel_layout import ModalLayout
 from .kernels.decimation import RATIO, SLOTS
 from .step_stability import require_stable_step
 from .stored_energy import stored_energy
+
+WORKS = ("input_work", "dissipated", "contact_work")  # that the kernel sums over a run
 
 
 @dataclass
@@ -73,47 +76,42 @@ def integrate_every_step(
     fluid, start = layout.fluid(modal, cases), start_amplitudes(model, rest)
     start_state(layout, modal, contact, laws, fluid, state, work, force[0], start)
     start_displacement, start_force = state.row_displacement.copy(), state.row_force.copy()
-    mechanical_before = np.sum(modal_energies(layout, modal.dt, state), axis=0)
-    stored_before = stored_energy(contact, laws, state)
+    held_before = _held_energies(layout, modal, contact, laws, state)
     trace = layout.trace(ticks * RATIO)
     output = layout.output(np.zeros((RATIO, SLOTS)), ticks, steps_per_second)
+    hold, later = layout.hold(modal), np.ascontiguousarray(force[1:])
     done = entry_points(layout.lanes).march(
-        modal,
-        contact,
-        laws,
-        layout.hold(modal),
-        fluid,
-        state,
-        tally,
-        output,
-        trace,
-        work,
-        np.ascontiguousarray(force[1:]),
+        modal, contact, laws, hold, fluid, state, tally, output, trace, work, later
     )
     if done < ticks * RATIO:
         raise _diverged(done / steps_per_second, state.row_displacement[:, :cases])
     displacement = _with_start(start_displacement, trace.displacement)[:cases]
     force_on_rows = _with_start(start_force, trace.force)[:cases]
     contacts, elements = layout.contact_rows(), layout.element_rows()
-    mechanical = np.sum(modal_energies(layout, modal.dt, state), axis=0) - mechanical_before
-    stored = stored_energy(contact, laws, state) - stored_before
+    held = _held_energies(layout, modal, contact, laws, state)
+    energy = {name: getattr(tally, name)[0] for name in WORKS}
+    energy |= {name: held[name] - held_before[name] for name in held}
+    energy |= {"fluid_work": tally.fluid_work[0]} if len(fluid.force) else {}
     return Traces(
         time=np.arange(ticks * RATIO + 1) / steps_per_second,
         contact_displacement=displacement[:, contacts],
         contact_force=force_on_rows[:, contacts],
         element_displacement=displacement[:, elements],
         element_force=force_on_rows[:, elements],
-        energy={
-            "input_work": tally.input_work[0, :cases],
-            "dissipated": tally.dissipated[0, :cases],
-            "contact_work": tally.contact_work[0, :cases],
-            "mechanical": mechanical[:cases],
-            "stored": stored[:cases],
-            **({"fluid_work": tally.fluid_work[0, :cases]} if len(fluid.force) else {}),
-        },
+        energy={name: values[:cases] for name, values in energy.items()},
         sliding_work=tally.sliding_work[:, :cases].T,
         slip_work=tally.slip_work[:, :cases].T,
     )
+
+
+def _held_energies(
+    layout: ModalLayout, modal: Any, contact: Any, laws: Any, state: Any
+) -> dict[str, np.ndarray]:
+    """Return {term: (lane,)} J of the energies that modes, and contacts and elements, hold."""
+    return {
+        "mechanical": np.sum(modal_energies(layout, modal.dt, state), axis=0),
+        "stored": stored_energy(contact, laws, state),
+    }
 
 
 def _diverged(time_s: float, displacement: np.ndarray) -> IntegrationError:

@@ -19,9 +19,8 @@ from vibroimpact.reduction.reduced_model import build_model
 
 
 def make(given: Any, made: Any, params: Any) -> None:
-    """Write the reduced model, its accuracy, and the contribution of each family of its basis.
+    """made: model (.nc), accuracy and quality (.csv). params: config, library.
 
-    made: model (.nc), accuracy and quality (.csv). params: config, library.
     Raises ModelAccuracyError for a mesh too coarse, ValueError for a basis that is not complete.
     """
     config = StageSettings(params.config)

@@ -21,9 +21,7 @@ from vibroimpact.study.method_agreement import (
 
 
 def make(given: Any, made: Any, params: Any) -> None:
-    """Gather the estimates of all cases into the consistency tables.
-
-    given: model, tables of the cases. made: table, summary, collapse and equivalent (.csv),
+    """given: model, tables of the cases. made: table, summary, collapse and equivalent (.csv),
     dataset (.nc). params: config, library, digest of all that the numbers depend on.
     """
     config = StageSettings(params.config)

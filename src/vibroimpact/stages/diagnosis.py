@@ -12,9 +12,7 @@ from vibroimpact.io.provenance import verdict_origin
 
 
 def make(given: Any, made: Any, params: Any, threads: int) -> None:
-    """Write the effects that a model lacks of a measured campaign, in one job.
-
-    given: campaign. made: verdict; the other files lie in its folder. params: model in plain
+    """given: campaign. made: verdict; the other files lie in its folder. params: model in plain
     values, effort, so_far: file of the progress. threads: runs at a time.
     """
     values, campaign = params.model, str(given.campaign)

@@ -15,9 +15,7 @@ from vibroimpact.reports.figures.drawing import save_plots
 
 
 def make(given: Any, made: Any, params: Any) -> None:
-    """Draw the figures of a diagnosis and write its page.
-
-    given: verdict, evidence, spectra. made: page; the figures lie in figures/ of its folder.
+    """given: verdict, evidence, spectra. made: page; the figures lie in figures/ of its folder.
     params: model in plain values, name of the campaign.
     """
     model = model_from(params.model)

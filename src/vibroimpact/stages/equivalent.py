@@ -23,10 +23,8 @@ from vibroimpact.study.headline import flag_sentences
 
 
 def make(given: Any, made: Any, params: Any) -> None:
-    """Identify the equivalent supports of a measured tube: tables, figures and page.
-
-    given: campaign, captions. made: page; tables and figures lie in its folder. params: model in
-    plain values, library, name of the campaign, study: folder of the study drawn behind the
+    """given: campaign, captions. made: page; tables and figures lie in its folder. params: model
+    in plain values, library, name of the campaign, study: folder of the study drawn behind the
     points, or None.
     """
     values, folder = params.model, Path(made.page).parent

@@ -14,10 +14,7 @@ from vibroimpact.study.case_files import read_case
 
 
 def make(given: Any, made: Any, params: Any) -> None:
-    """Draw the figures that compare the methods and check the simulations.
-
-    given: model, records, table. made: figures. params: config.
-    """
+    """given: model, records, table. made: figures. params: config."""
     config, model = StageSettings(params.config), read_model(given.model)
     rows = read_table(given.table)
     records = checks.records_shown(given.records, read_case)

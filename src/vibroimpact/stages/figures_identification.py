@@ -15,10 +15,7 @@ from vibroimpact.study.case_files import read_case
 
 
 def make(given: Any, made: Any, params: Any) -> None:
-    """Draw the figures of the identifications, for the largest gap.
-
-    given: model, spectra, curves, table. made: figures. params: config.
-    """
+    """given: model, spectra, curves, table. made: figures. params: config."""
     config, model = StageSettings(params.config), read_model(given.model)
     rows = [row for row in read_table(given.table) if row["gap_m"] == shown_gap(config)]
     curves = cases_of_gap(given.curves, config, read_case)

@@ -13,10 +13,7 @@ from vibroimpact.structure.tube import build_structure
 
 
 def make(given: Any, made: Any, params: Any) -> None:
-    """Draw the figures of the model.
-
-    given: quality. made: figures. params: config.
-    """
+    """given: quality. made: figures. params: config."""
     config = StageSettings(params.config)
     structure = build_structure(config)
     plots = [

@@ -14,10 +14,7 @@ from vibroimpact.study.case_files import read_case
 
 
 def make(given: Any, made: Any, params: Any) -> None:
-    """Draw the figures of the responses.
-
-    given: model, campaign, spectra. made: figures. params: config.
-    """
+    """given: model, campaign, spectra. made: figures. params: config."""
     config, model = StageSettings(params.config), read_model(given.model)
     campaign = read_campaign(given.campaign, force_needed=False)
     spectra = psd_table.spectra_shown(config, given.spectra, read_case)

@@ -15,9 +15,7 @@ from vibroimpact.study.case_files import read_case
 
 
 def make(given: Any, made: Any, params: Any) -> Stopwatch:
-    """Write the estimates of the cases of some loads, and the curves behind them.
-
-    given: model; records and spectra of the cases. made: tables (.csv) and curves (.nc) of the
+    """given: model; records and spectra of the cases. made: tables (.csv) and curves (.nc) of the
     cases. params: config, library.
     """
     config = StageSettings(params.config)

@@ -15,9 +15,7 @@ from vibroimpact.reports.figures.drawing import save_plots
 
 
 def make(given: Any, made: Any, params: Any) -> None:
-    """Make a campaign of a folder of measurements, check it and draw it.
-
-    made: campaign, table, text, checks, figure. params: folder. Raises SystemExit with the
+    """made: campaign, table, text, checks, figure. params: folder. Raises SystemExit with the
     problems of the folder.
     """
     try:

@@ -14,10 +14,8 @@ from vibroimpact.reports.figures.drawing import save_plots
 
 
 def make(given: Any, made: Any, params: Any) -> None:
-    """Check a campaign and draw it.
-
-    given: campaign. made: checks, text, figure. Raises SystemExit with the problems of a campaign
-    that can not be read.
+    """given: campaign. made: checks, text, figure. Raises SystemExit with the problems of a
+    campaign that can not be read.
     """
     campaign, checks = check_file(given.campaign)
     if campaign is None:

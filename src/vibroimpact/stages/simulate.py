@@ -15,9 +15,8 @@ from vibroimpact.study.simulation import simulate_cases
 
 
 def make(given: Any, made: Any, params: Any) -> Stopwatch:
-    """Simulate the cases of some loads: their records and, if wanted, their time series.
-
-    given: model. made: records of the cases, series of the cases or none. params: config, library.
+    """given: model. made: records of the cases, series of the cases or none. params: config,
+    library.
     """
     config, model = StageSettings(params.config), read_model(given.model)
     cases = cases_of_files(made.records)

@@ -16,10 +16,7 @@ from vibroimpact.study.spectra_writer import spectra_writer
 
 
 def make(given: Any, made: Any, params: Any) -> Stopwatch:
-    """Simulate the cases of some loads: their records and spectra, without time series.
-
-    given: model. made: records and spectra of the cases. params: config, library.
-    """
+    """given: model. made: records and spectra of the cases. params: config, library."""
     config, model = StageSettings(params.config), read_model(given.model)
     cases = cases_of_files(made.records)
     source = file_attributes(params.config, params.library) | model_attributes(given.model)

@@ -13,10 +13,7 @@ from vibroimpact.study.case_spectra import case_spectra
 
 
 def make(given: Any, made: Any, params: Any) -> Stopwatch:
-    """Write the spectra of the cases of some loads from their time series.
-
-    given: series of the cases. made: spectra of the cases. params: config, library.
-    """
+    """given: series of the cases. made: spectra of the cases. params: config, library."""
     config, stopwatch = StageSettings(params.config), Stopwatch()
     for series, path in zip(given.series, made.spectra, strict=True):
         record = read_case(series)

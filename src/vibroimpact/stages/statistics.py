@@ -10,10 +10,7 @@ from vibroimpact.study.statistics_table import statistics_rows
 
 
 def make(given: Any, made: Any, params: Any) -> None:
-    """Gather the statistics of all cases into one table.
-
-    given: records. made: table. params: config.
-    """
+    """given: records. made: table. params: config."""
     rows = [row for path in given.records for row in statistics_rows(read_case(path))]
     write_table(rows, made.table)
     cases = len(given.records)

@@ -1,4 +1,4 @@
-"""Write the page of a study."""
+"""Write the page of a study, and its wear life if it has one."""
 
 from __future__ import annotations
 
@@ -29,10 +29,8 @@ from vibroimpact.study.wear.life import WearRow, wear_rows
 
 
 def make(given: Any, made: Any, params: Any) -> None:
-    """Write the page of a study, and its wear life if it has one.
-
-    given: model, accuracy, records, series, spectra, curves, tables, figures, captions. made: page,
-    wear. params: config, jobs: benchmark files and logs of the study.
+    """given: model, accuracy, records, series, spectra, curves, tables, figures, captions. made:
+    page, wear. params: config, jobs: benchmark files and logs of the study.
     """
     config = StageSettings(params.config)
     tables = {Path(path).stem: read_table(path) for path in given.tables}

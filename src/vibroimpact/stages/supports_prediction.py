@@ -15,11 +15,7 @@ from vibroimpact.study.equivalent_table import EQUIVALENT_COLUMNS
 
 
 def make(given: Any, made: Any, params: Any) -> None:
-    """Write the predictions of linear supports for the study: one k and c for all, and each its
-    own.
-
-    given: model, equivalent, records, spectra. made: table, one. params: config.
-    """
+    """given: model, equivalent, records, spectra. made: table, one. params: config."""
     settings, model = params.config, read_model(given.model)
     of_all = {**settings, "identification": {**settings["identification"], "groups": ALL}}
     records = [read_case(path, (*RECORD_READ, *supports.RECORD_READ)) for path in given.records]

@@ -13,10 +13,7 @@ from vibroimpact.study.synthetic_campaign import synthetic_campaign
 
 
 def make(given: Any, made: Any, params: Any) -> Stopwatch:
-    """Simulate the stand-in for a measured campaign and write it as a campaign file.
-
-    given: model. made: campaign. params: config, library, loads in N RMS.
-    """
+    """given: model. made: campaign. params: config, library, loads in N RMS."""
     config, stopwatch = StageSettings(params.config), Stopwatch()
     campaign = synthetic_campaign(config, read_model(given.model), params.loads, stopwatch)
     write_campaign(

@@ -13,10 +13,7 @@ from vibroimpact.study.timing import study_timing
 
 
 def make(given: Any, made: Any, params: Any) -> None:
-    """Sum the benchmark files and logs of a study into a table and a figure.
-
-    given: benchmarks. made: table, figures. params: config, logs.
-    """
+    """given: benchmarks. made: table, figures. params: config, logs."""
     rows = study_timing(given.benchmarks, params.logs)
     write_table(rows, made.table)
     plots = timing(StageSettings(params.config), rows)

@@ -16,7 +16,7 @@ import numpy as np
 
 from vibroimpact.campaign.signals import CampaignSignals, transfer
 
-from .linear_record import COHERENT, mean_coherence
+from .linear_record import COHERENT, mean_coherence, mean_cosine
 
 Found = Iterator[tuple[int, int | None, str]]
 
@@ -166,9 +166,8 @@ class _Pair:
 
     def turn(self, channel: int) -> float:
         """Return the mean cosine of the phase of a channel between the two records."""
-        product = self.h1[channel] * self.other_h1[channel].conj()
-        cosine = product.real / np.maximum(np.abs(product), np.finfo(float).tiny)
-        return float(np.average(cosine, weights=self.weights(channel, channel)))
+        own, other = self.h1[channel], self.other_h1[channel]
+        return mean_cosine(own, other, self.weights(channel, channel))
 
     @cached_property
     def factors(self) -> dict[int, float]:

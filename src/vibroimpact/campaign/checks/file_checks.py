@@ -57,6 +57,7 @@ from .stated import (
     size_rows,
     time_rows,
     unit_rows,
+    warning,
 )
 
 COLUMNS = ("check", "level", "record", "channel", "message")
@@ -252,24 +253,19 @@ def _faults_of(signal, period, measured, record, channel, what):
             if signal.size
             else f"Record {record} has no valid sample."
         )
-        yield check_row("gaps in time", "warn", message, record, channel)
+        yield warning("gaps in time", message, record, channel)
         return
     # a support that is not touched exerts nothing, for as long as that lasts
     presses = (channel, "contact_force") in zip(measured.channels, measured.kinds, strict=True)
     if not signal.any() and not presses:
-        yield check_row(
-            "drop-outs",
-            "warn",
-            f"{channel} is zero throughout record {record}. {what}.",
-            record,
-            channel,
+        yield warning(
+            "drop-outs", f"{channel} is zero throughout record {record}. {what}.", record, channel
         )
         return
     at = spike(signal)
     if at is not None:
-        yield check_row(
+        yield warning(
             "spikes",
-            "warn",
             f"{channel} has a single sample of {signal[at]:.4g} (SI) at {at / measured.rate:.3f} s"
             f" in record {record}, alone beyond all others: a fault of the transmission. {what}:"
             " cut it out with from_s and to_s, or record again.",
@@ -280,9 +276,8 @@ def _faults_of(signal, period, measured, record, channel, what):
     # Only the last period of a periodic signal: every peak recurs in each period.
     share = clipped_share(signal[-period:] if 0 < period < signal.size else signal)
     if share is not None:
-        yield check_row(
+        yield warning(
             "clipping",
-            "warn",
             f"{channel} has flat tops near {np.abs(signal - np.median(signal)).max():.4g} (SI) in"
             f" record {record}, {100 * share:.2g} % of the samples: the range of the amplifier was"
             f" too small. {what}.",
@@ -292,9 +287,8 @@ def _faults_of(signal, period, measured, record, channel, what):
     still = presses or (channel in measured.forces and blows(signal) > 0)
     lost = None if still else drop_out(signal, measured.rate, measured.starts_at_rest)
     if lost is not None:
-        yield check_row(
+        yield warning(
             "drop-outs",
-            "warn",
             f"{channel} is held or vanishes at {lost[0]:.2f} s for {lost[1]:.3f} s in record"
             f" {record}. {what}.",
             record,
@@ -332,9 +326,8 @@ def _linear(measured, spectra, record):
             yield _not_checked(check, f"no response follows {measured.forces[0]}")
         return
     if best < 0.8:
-        yield check_row(
+        yield warning(
             "coherence",
-            "warn",
             f"The best response has a mean coherence of {best:.2f} with {measured.forces[0]} in"
             f" record {name}: the lowest level is not linear, noisy, or moved by another force as"
             " well.",
@@ -342,9 +335,8 @@ def _linear(measured, spectra, record):
         )
     apart, common = channel_delays(spectra, measured.kinds, measured.rate, finite)
     for index, samples in apart.items():
-        yield check_row(
+        yield warning(
             "delay",
-            "warn",
             f"{measured.channels[index]} {'lags' if samples > 0 else 'leads'} the other channels by"
             f" {abs(samples):.1f} samples ({abs(samples) / measured.rate * 1e3:.2f} ms) in record"
             f" {name}.",
@@ -352,9 +344,8 @@ def _linear(measured, spectra, record):
             measured.channels[index],
         )
     if common is not None:
-        yield check_row(
+        yield warning(
             "delay",
-            "warn",
             f"All responses {'lag' if common > 0 else 'lead'} {measured.forces[0]} by"
             f" {abs(common):.1f} samples ({abs(common) / measured.rate * 1e3:.2f} ms) in record"
             f" {name}.",
@@ -381,12 +372,11 @@ def _mix_ups(measured, spectra, name):
             swapped = f"{silent} {across}, which lies across the force, does: the two seem swapped."
             why = {along: swapped, across: swapped}
         for channel, message in why.items():
-            yield check_row("swapped channels", "warn", message, name, channel)
+            yield warning("swapped channels", message, name, channel)
     against = reversed_hint(measured, spectra)
     if against is not None:
-        yield check_row(
+        yield warning(
             "swapped channels",
-            "warn",
             f"{measured.channels[against]} moves against all other channels below the first"
             f" resonance in record {name}: its polarity seems reversed.",
             name,
@@ -403,9 +393,8 @@ def _between_records(measured):
     elif len(measured.records) > 1:
         rows += contradictions(measured)
     for record, channel, sentence in rows:
-        yield check_row(
+        yield warning(
             "between records",
-            "warn",
             f"{sentence} Correct the file, or leave the record out.",
             measured.records[record],
             measured.forces[0] if channel is None else measured.channels[channel],
@@ -418,23 +407,20 @@ def _directions(measured):
     ):
         length = float(np.linalg.norm(direction))
         if not abs(length - 1.0) < 0.01:
-            yield check_row(
+            yield warning(
                 "directions",
-                "warn",
                 f"The direction of {name} has the length {length:.3g}, not 1: write a unit vector.",
                 channel=name,
             )
         if not np.isfinite(point).all():
-            yield check_row(
+            yield warning(
                 "directions",
-                "warn",
                 f"The place of {name} is not known: it can not be compared with a model.",
                 channel=name,
             )
     if not np.isfinite(alignment(measured)).any():
-        yield check_row(
+        yield warning(
             "directions",
-            "warn",
             f"The direction of {measured.forces[0]} is not known.",
             channel=measured.forces[0],
         )
@@ -459,9 +445,8 @@ def _stationarity(measured, usable, spectra):
             )
             made = made or trend is not None
             if is_drifting(trend):
-                yield check_row(
+                yield warning(
                     "stationarity",
-                    "warn",
                     f"The level of {channel} {'rises' if trend[0] > 0 else 'falls'} by"
                     f" {abs(trend[0]):.1f} dB over record {name} (t = {trend[1]:.1f}).",
                     name,
@@ -487,9 +472,8 @@ def _length(measured, spectra):
         sure = GOOD_AVERAGES / (duration * (10.0 ** (1.0 / BANDS_PER_DECADE) - 1.0))
         if sure > low:
             stated = f"[{np.ceil(100.0 * sure) / 100.0:g}, {np.floor(10.0 * high) / 10.0:g}]"
-            yield check_row(
+            yield warning(
                 "record length",
-                "warn",
                 f"Record {name} of {duration:.3g} s is sure from {sure:.3g} Hz up. The force"
                 f" excites {low:.3g} Hz and above: state band_Hz: {stated} in campaign.yaml, or"
                 f" record {np.ceil(duration * sure / lowest):.0f} s.",
@@ -537,4 +521,4 @@ def _content(measured, usable):
         ("holdout", "nothing is left to verify on"),
     ):
         if split not in splits:
-            yield check_row("content", "warn", f"No usable record has the split '{split}': {why}.")
+            yield warning("content", f"No usable record has the split '{split}': {why}.")

@@ -38,6 +38,13 @@ def mean_coherence(spectra: Transfer) -> np.ndarray:
     return np.clip((spectra.coherence.mean(axis=-1) - bias) / (1.0 - bias), 0.0, 1.0)
 
 
+def mean_cosine(one: np.ndarray, other: np.ndarray, weights: np.ndarray) -> float:
+    """Return the weighted mean cosine of the phase between two complex responses (line,)."""
+    product = one * other.conj()
+    cosine = product.real / np.maximum(np.abs(product), np.finfo(float).tiny)
+    return float(np.average(cosine, weights=weights))
+
+
 def channel_delays(
     spectra: Transfer, kinds: Sequence[str], rate: float, finite: np.ndarray
 ) -> tuple[dict[int, float], float | None]:

@@ -14,7 +14,8 @@ import numpy as np
 
 from vibroimpact.campaign.signals import Transfer
 
-from .linear_record import mean_coherence
+from .linear_record import mean_coherence, mean_cosine
+from .stated import warning
 
 BANDS = 30
 LEAST_COHERENCE = 0.3  # least mean coherence of a channel that is judged, and of a band of it
@@ -47,30 +48,26 @@ def band_levels_dB(frequency: np.ndarray, h1: np.ndarray, weights: np.ndarray) -
 
     NaN if a band holds no line.
     """
-    place = _bands(frequency)
-    power = np.abs(h1) ** 2 * weights
-    sums = np.array([[np.sum(values[place == band]) for band in range(BANDS)] for values in power])
-    total = np.array(
-        [[np.sum(values[place == band]) for band in range(BANDS)] for values in weights]
-    )
+    chosen = _bands(frequency)
+    sums, total = (np.abs(h1) ** 2 * weights) @ chosen.T, weights @ chosen.T
     filled = (total > 0.0) & (sums > 0.0)
     return np.where(
         filled, 10.0 * np.log10(np.where(filled, sums, 1.0) / np.where(filled, total, 1.0)), np.nan
     )
 
 
-def _bands(frequency):
-    """Return (line,): the band of each line."""
+def _bands(frequency: np.ndarray) -> np.ndarray:
+    """Return (band, line) bool: the lines (line,) in Hz of each band."""
     edges = np.geomspace(frequency[0], frequency[-1] * (1.0 + 1e-9), BANDS + 1)
-    return np.clip(np.searchsorted(edges, frequency, side="right") - 1, 0, BANDS - 1)
+    place = np.clip(np.searchsorted(edges, frequency, side="right") - 1, 0, BANDS - 1)
+    return place == np.arange(BANDS)[:, None]
 
 
 def coherent_bands(frequency: np.ndarray, coherence: np.ndarray) -> np.ndarray:
     """Return (channel, band) bool: whether the mean coherence (channel, line) of a band is at least
     LEAST_COHERENCE. The response in the others is noise, and more than any linear model has.
     """
-    place = _bands(frequency)
-    chosen = place == np.arange(BANDS)[:, None]
+    chosen = _bands(frequency)
     mean = coherence @ chosen.T / np.maximum(chosen.sum(axis=1), 1)
     return mean >= LEAST_COHERENCE
 
@@ -121,26 +118,26 @@ def compare_with_model(
         rows += _swap_rows(pair, record, misfit[first, second], misfit[first, first])
     for index, channel in enumerate(channels):
         place = exchanged.get(index, index)
-        if _mean_cosine(h1[index], model[place], weights[index]) < OPPOSITE:
+        if mean_cosine(h1[index], model[place], weights[index]) < OPPOSITE:
             rows.append(
-                _row(
+                warning(
                     "swapped channels",
-                    record,
-                    names[channel],
                     f"{names[channel]} moves against the model in record {record}: its polarity "
                     "or its channel_direction is reversed.",
+                    record,
+                    names[channel],
                 )
             )
         gain = float(offset[index, place])
         # of bands that differ by more than their offset, none is all of one unit
         if abs(gain) > max(UNIT_FACTOR_DB, misfit[index, place]):
             rows.append(
-                _row(
+                warning(
                     "units",
-                    record,
-                    names[channel],
                     f"{names[channel]} is {10 ** (gain / 20):.3g} times the model in record "
                     f"{record}{_unit_hint(gain)}: check its unit.",
+                    record,
+                    names[channel],
                 )
             )
     return _merge_gains(rows)
@@ -149,23 +146,16 @@ def compare_with_model(
 def _swap_rows(pair, record, after_dB, before_dB):
     """Return the rows of two channels that fit better when exchanged."""
     return [
-        _row(
+        warning(
             "swapped channels",
-            record,
-            this,
             f"{this} moves as the model does at {that}, and {that} as it does at {this}, in"
             f" record {record}: the two seem swapped (misfit {after_dB:.1f} instead of"
             f" {before_dB:.1f} dB).",
+            record,
+            this,
         )
         for this, that in (pair, pair[::-1])
     ]
-
-
-def _mean_cosine(h1, model, weights):
-    """Return the weighted mean cosine of the phase between two responses (line,)."""
-    product = h1 * model.conj()
-    cosine = np.real(product) / np.maximum(np.abs(product), np.finfo(float).tiny)
-    return np.average(cosine, weights=weights)
 
 
 def _merge_gains(rows: list[dict]) -> list[dict]:
@@ -213,13 +203,3 @@ def _unit_hint(gain_dB: float) -> str:
         if abs(np.log(factor / known)) < FACTOR_TOLERANCE
     ]
     return f", as between {near[0]}" if near else ""
-
-
-def _row(check: str, record: str | None, channel: str, message: str) -> dict:
-    return {
-        "check": check,
-        "level": "warn",
-        "record": record,
-        "channel": channel,
-        "message": message,
-    }

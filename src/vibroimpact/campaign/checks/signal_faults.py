@@ -55,7 +55,7 @@ def clipped_share(signal: np.ndarray) -> float | None:
             inner = int(np.count_nonzero(near > (1.0 - share) * top))
             both = int(np.count_nonzero(near > (1.0 - 2.0 * share) * top))
             piled = inner >= FEWEST_AT_TOP and inner > PILE_UP * max(both - inner, 1)
-            if piled and _runs(side > (1.0 - share) * top) >= FEWEST_CRESTS:
+            if piled and _runs(side > (1.0 - share) * top)[0].size >= FEWEST_CRESTS:
                 most = max(most, inner)
         flat += most
     return flat / signal.size if flat else None
@@ -77,15 +77,10 @@ def _repeated_top(near: np.ndarray, top: float) -> int:
     return int(same) if flat and same >= SAME_VALUE * max(int(beneath.max(initial=0)), 1) else 0
 
 
-def _runs(flags: np.ndarray) -> int:
-    """Return the number of runs of True."""
-    return int(flags[0]) + int(np.count_nonzero(flags[1:] & ~flags[:-1]))
-
-
-def _longest(flags: np.ndarray) -> int:
-    """Return the length of the longest run of True."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(np.int8), [0]])))
-    return int(np.max(edges[1::2] - edges[::2], initial=0))
+def _runs(flags: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return (starts, lengths) of the runs of True."""
+    edges = np.flatnonzero(np.diff(flags.astype(np.int8), prepend=0, append=0))
+    return edges[::2], edges[1::2] - edges[::2]
 
 
 def drop_out(signal: np.ndarray, rate: float, starts_at_rest: bool) -> tuple[float, float] | None:
@@ -97,7 +92,8 @@ def drop_out(signal: np.ndarray, rate: float, starts_at_rest: bool) -> tuple[flo
     A drop-out is a stretch of one constant value, or one in which the motion and its differences
     nearly vanish. The signal has no missing samples.
     """
-    starts, lengths = _constant_runs(signal)
+    starts, lengths = _runs(np.diff(signal) == 0.0)
+    lengths = lengths + 1  # values, not steps between them
     counted = ~((starts == 0) & starts_at_rest)
     if counted.any():
         longest = int(np.argmax(np.where(counted, lengths, 0)))
@@ -115,25 +111,14 @@ def drop_out(signal: np.ndarray, rate: float, starts_at_rest: bool) -> tuple[flo
     )
     # A drop-out begins abruptly: motion that has not begun, or that decays, is not one.
     lively = moving > LIVELY_SHARE * np.median(moving)
-    for first in _firsts(quiet):
-        if not lively[max(first - 2, 0) : first].any():
-            quiet[first : first + int(np.argmin(np.append(quiet[first:], False)))] = False
-    if not quiet.any():
+    abrupt = [
+        (first, length)
+        for first, length in zip(*_runs(quiet), strict=True)
+        if lively[max(first - 2, 0) : first].any()
+    ]
+    if not abrupt:
         return None
-    return int(np.argmax(quiet)) * size / rate, _longest(quiet) * size / rate
-
-
-def _firsts(flags: np.ndarray) -> np.ndarray:
-    """Return the indices at which runs of True begin."""
-    return np.flatnonzero(np.diff(flags.astype(int), prepend=0) == 1)
-
-
-def _constant_runs(signal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return (starts, lengths) in samples of all runs of two and more equal values."""
-    edges = np.flatnonzero(
-        np.diff(np.concatenate([[0], (np.diff(signal) == 0.0).astype(np.int8), [0]]))
-    )
-    return edges[::2], edges[1::2] - edges[::2] + 1
+    return abrupt[0][0] * size / rate, max(length for _, length in abrupt) * size / rate
 
 
 def _usual(lengths: np.ndarray, longest: int) -> bool:

@@ -34,15 +34,21 @@ def check_row(
     }
 
 
+def warning(
+    check: str, message: str, record: str | None = None, channel: str | None = None
+) -> dict:
+    """Return a row of a check of level "warn"."""
+    return check_row(check, "warn", message, record, channel)
+
+
 def assumed_rows(campaign: xr.Dataset) -> Rows:
     """Yield rows of the values that were filled in, and of a filter that is not simulated."""
     for sentence in filter(None, campaign.attrs.get("assumed", "").split("\n")):
-        yield check_row("contract", "warn", sentence[0].upper() + sentence[1:] + ".")
+        yield warning("contract", sentence[0].upper() + sentence[1:] + ".")
     antialias = campaign.attrs.get("antialias", "")
     if antialias not in (*FILTERS, "", "unknown"):
-        yield check_row(
+        yield warning(
             "contract",
-            "warn",
             f"antialias = '{antialias}' is a filter that is not simulated: simulated records pass"
             f" {FILTERS[0]}, so that the highest frequencies may differ; known are"
             f" {' and '.join(FILTERS)}.",
@@ -56,9 +62,8 @@ def unit_rows(measured: CampaignSignals) -> Rows:
         (measured.force_unit_faults, measured.forces),
     ):
         for index, sentence in faults.items():
-            yield check_row(
+            yield warning(
                 "units",
-                "warn",
                 f"{sentence[0].upper()}{sentence[1:]}. It is left out.",
                 channel=names[index],
             )
@@ -72,9 +77,8 @@ def size_rows(campaign: xr.Dataset, measured: CampaignSignals) -> Rows:
     for name, values in gaps.items():
         for place in np.argwhere(values > WIDE_GAP_M)[:1]:
             index = "".join(f"[{number}]" for number in place)
-            yield check_row(
+            yield warning(
                 "sizes",
-                "warn",
                 f"{name}{index} = {values[tuple(place)]:g} m is a wide clearance: is it in"
                 " millimetres? Write metres.",
             )
@@ -84,9 +88,8 @@ def size_rows(campaign: xr.Dataset, measured: CampaignSignals) -> Rows:
     }
     for name, points in places.items():
         for place in np.argwhere(np.abs(points) > FAR_M)[:1]:
-            yield check_row(
+            yield warning(
                 "sizes",
-                "warn",
                 f"{name}[{place[0]}] = {points[place[0]].tolist()} m is far out: is it in"
                 " millimetres? Write metres.",
             )
@@ -127,9 +130,8 @@ def load_rows(campaign: xr.Dataset, measured: CampaignSignals) -> Rows:
         found = load_of(measured.force[record][0], measured.rate, measured.stated_band)
         yield from _offset_rows(measured, record)
         if not is_load(stated[record], found):
-            yield check_row(
+            yield warning(
                 "load_rms",
-                "warn",
                 f"load_rms is {stated[record]:.4g} but {measured.forces[0]} has an RMS of"
                 f" {found:.4g} in record {name}: the unit or the valid samples of one of them are"
                 " wrong; the force itself is used.",
@@ -148,9 +150,8 @@ def _offset_rows(measured: CampaignSignals, record: int) -> Rows:
         offset, rms = (float(np.median(kept)), float(kept.std())) if kept.size else (0.0, 0.0)
         if abs(offset) > OFFSET * rms > 0.0:
             unit = "m/s²" if measured.force_kinds[index] == BASE else "N"
-            yield check_row(
+            yield warning(
                 "load_rms",
-                "warn",
                 f"{measured.forces[index]} reads a constant {offset:.4g} {unit} in record {name},"
                 f" and an RMS of {rms:.4g} {unit} about it: loads are taken about the mean."
                 " If it reads that at rest too, add remove_offset: true to it in campaign.yaml.",
@@ -164,9 +165,8 @@ def short_rows(measured: CampaignSignals) -> Rows:
     for record, name in enumerate(measured.records):
         samples = measured.force[record].shape[-1]
         if samples < FEWEST_SAMPLES:
-            yield check_row(
+            yield warning(
                 "record length",
-                "warn",
                 f"Record {name} has {samples} samples: no spectrum can be averaged over fewer than"
                 f" {FEWEST_SAMPLES}. The record is left out.",
                 name,
