@@ -93,7 +93,7 @@ def supports_curves(case: SupportsCase, result: SupportsResult) -> xr.Dataset:
         data |= {
             "best_correlation": result.spectra.correlation,
             "broadband_curve": result.spectra.curve[layout.broadband],
-            "log_stiffness_covariance": result.spectra.covariance[stiffnesses, stiffnesses],
+            "log_stiffness_covariance": result.spectra.found.covariance[stiffnesses, stiffnesses],
         }
     names = [direction.name for direction in directions]
     about = {"long_name": "group of supports and direction"}

@@ -6,6 +6,7 @@ main mode the measured pole.
 """
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -21,16 +22,16 @@ from .case_estimates import (
     without_damping,
 )
 from .estimate import Estimate, mark_weak, unresolved
-from .graded_supports import MethodResult, graded_supports
+from .graded_supports import graded_supports
 from .observed_case import ObservedCase
 from .ods import DeflectionShape
 from .operational_pole import OperationalPole
 from .peak import LEVELS, PeakFit
-from .pole_step import PoleStep, step_to_pole
+from .pole_step import step_to_pole
 from .solvable import or_none
 from .support_fit import Start, SupportSearch, inverse_information
 from .supports_by_shapes import ShapeComparison, ShapesFit, block_shapes
-from .supports_by_spectra import CoarseCost, SpectraComparison, SpectraFit
+from .supports_by_spectra import SpectraComparison, SpectraFit
 from .supports_tube import SupportsTube
 
 SHAPE_LOSS = 0.1  # loss factor of the supports at the start of the search by shapes
@@ -93,7 +94,7 @@ class SupportsCase(ObservedCase):
             tube.layout.kernel,
             segments[:, moving],
         )
-        coarse = CoarseCost(comparison, tube.at_broadband_bins.outputs(moving))
+        coarse = partial(comparison.coarse_cost, tube.at_broadband_bins.outputs(moving))
         starts = self.search.coarse_starts(coarse, len(tube.directions))
         if shapes is not None:
             starts.append(Start(np.log(shapes.values.k), SHAPE_LOSS))
@@ -134,8 +135,8 @@ def estimates_of_supports(case: SupportsCase, result: SupportsResult) -> list[Es
     return found + _estimates_by_shapes(case, result) + _estimates_by_spectra(case, result)
 
 
-def _unresolved(case: SupportsCase, method: str, note: str, **pole: float) -> list[Estimate]:
-    return [unresolved(method, note, **pole).at(direction) for direction in case.tube.directions]
+def _unresolved(case: SupportsCase, method: str, note: str, *pole: float) -> list[Estimate]:
+    return [unresolved(method, note, *pole).at(direction) for direction in case.tube.directions]
 
 
 def _estimates_by_pole(
@@ -147,35 +148,27 @@ def _estimates_by_pole(
     """Return the Estimates of the step that a pole adds to the broadband comparison."""
     if fit is None:
         return _unresolved(case, method, "no resonance could be fitted to the main peak")
-    known = {"frequency": fit.frequency, "damping_ratio": fit.damping_ratio}
+    main = fit.frequency, fit.damping_ratio
     if result.spectra is None:
         note = f"a pole alone tells no support from others; {_why(case)}"
-        return _unresolved(case, method, note, **known)
-    start = result.spectra
-    pole = (fit.frequency, fit.damping_ratio, fit.covariance)
-    covariance = start.covariance if np.any(start.covariance) else _shape_of(start)
-    step: PoleStep | None = step_to_pole(
-        case.tube.structure, start.values.k, start.values.c, covariance, pole
-    )
+        return _unresolved(case, method, note, *main)
+    found = result.spectra.found
+    scattered = bool(np.any(found.covariance))
+    if not scattered:  # spectra without scatter: the shape of the covariance, without a size
+        jacobian = result.spectra.values.jacobian
+        found = replace(found, covariance=inverse_information(jacobian))
+    step = step_to_pole(case.tube.structure, found, (*main, fit.covariance))
     if step is None:
-        return _unresolved(case, method, "no supports give the main mode this pole", **known)
-    scatter = step.covariance if np.any(start.covariance) else np.zeros_like(step.covariance)
-    found = MethodResult(method, step.k, step.c, scatter, step.by_frequency, **known)
-    return graded_supports(found, case.tube.structure, case.search)
+        return _unresolved(case, method, "no supports give the main mode this pole", *main)
+    if not scattered:
+        step = replace(step, covariance=np.zeros_like(step.covariance))
+    return graded_supports(method, step, case.tube.structure, case.search, *main)
 
 
 def _why(case: SupportsCase) -> str:
     """Return why there is no broadband comparison."""
-    return _no_spectra(case) if case.force_known else NEEDS_FORCE
-
-
-def _shape_of(fit: SpectraFit) -> np.ndarray:
-    """Return the covariance of spectra without scatter: its shape, without a size."""
-    return inverse_information(fit.values.jacobian)
-
-
-def _no_spectra(case: SupportsCase) -> str:
-    """Return why the broadband comparison found nothing."""
+    if not case.force_known:
+        return NEEDS_FORCE
     if not case.layout.frequency[case.layout.broadband_bins].size:
         return "the force has no power in the band of the comparison"
     return "no supports have these spectra"
@@ -187,11 +180,7 @@ def _estimates_by_shapes(case: SupportsCase, result: SupportsResult) -> list[Est
     if fit is None:
         still = "no supports have the shapes of the shape line"
         return _unresolved(case, "ods", ONE_SENSOR if len(case.line) < 2 else still)
-    # The error of the model is part of the covariance already.
-    found = MethodResult(
-        "ods", fit.values.k, np.full(len(fit.values.k), np.nan), fit.covariance, None
-    )
-    estimates = graded_supports(found, case.tube.structure, case.search)
+    estimates = graded_supports("ods", fit.found, case.tube.structure, case.search)
     if fit.mac < LOWEST_MAC:
         estimates = [mark_weak(item, f"mean MAC only {fit.mac:.2f}") for item in estimates]
     return estimates
@@ -202,11 +191,10 @@ def _estimates_by_spectra(case: SupportsCase, result: SupportsResult) -> list[Es
     fit = result.spectra
     if fit is None:
         return _unresolved(case, "broadband", _why(case))
-    found = MethodResult("broadband", fit.values.k, fit.values.c, fit.covariance, fit.model_change)
     estimates = [
         without_damping(estimate) if at_edge else estimate
         for estimate, at_edge in zip(
-            graded_supports(found, case.tube.structure, case.search),
+            graded_supports("broadband", fit.found, case.tube.structure, case.search),
             fit.values.c_at_edge,
             strict=True,
         )
