@@ -111,11 +111,8 @@ COORDINATES: dict[str, tuple[tuple, str | None, str]] = {
 }
 
 
-def coordinate(name: str, values: Any) -> tuple:
-    """Return (dimensions, values, attributes) of a declared coordinate.
-
-    Raises KeyError for a coordinate that is not declared.
-    """
+def _coordinate(name: str, values: Any) -> tuple:
+    """Return (dimensions, values, attributes) of a declared coordinate."""
     dims, units, long_name = COORDINATES[name]
     if units is None:  # an empty list of names is still one of texts
         return dims, np.array(values, dtype=str), {"long_name": long_name}
@@ -125,13 +122,13 @@ def coordinate(name: str, values: Any) -> tuple:
 def describe(values: dict, coordinates: dict, attributes: dict) -> xr.Dataset:
     """Return a dataset of declared variables, with their dimensions, units and names.
 
-    Raises KeyError for a variable that is not declared.
+    Raises KeyError for a variable or coordinate that is not declared.
     """
     data = {}
     for name, value in values.items():
         dims, dtype, units, long_name = VARIABLES[name]
         data[name] = (dims, np.asarray(value, dtype), {"units": units, "long_name": long_name})
-    coords = {name: coordinate(name, value) for name, value in coordinates.items()}
+    coords = {name: _coordinate(name, value) for name, value in coordinates.items()}
     return xr.Dataset(data, coords, attributes)
 
 
