@@ -2,16 +2,33 @@
 functions of py.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from vibroimpact.identify.equivalent_support import equivalent_support
 from vibroimpact.identify.linear.family import LinearFamily, driven_modes
 from vibroimpact.identify.linear.modes import natural_frequencies
-from vibroimpact.identify.linear.poles import first_pole, frequency_of, pole_of, support_from_pole
+from vibroimpact.identify.linear.poles import first_pole, frequency_of
 from vibroimpact.identify.linear.responses import frf
-from vibroimpact.identify.reference_tube import Bins, ReferenceTube, Sensors
+from vibroimpact.identify.reference_tube import ReferenceTube
+from vibroimpact.identify.spectra_layout import SpectraLayout
 
+LAYOUT = SpectraLayout(
+    spacing_Hz=0.1,
+    highest=1200,
+    line_first=80,
+    line_last=600,
+    window="hann",
+    sensors=("apex.y", "bend_45.y"),
+    response=0,
+    broadband=1,
+    references=(0, 1),
+    force_band_Hz=(5.0, 200.0),
+    broadband_Hz=(6.0, 99.0),
+    stiffness_range=(1.0e3, 1.0e8),
+)
 MEMBERS = [(0.0, 0.0), (1.0e3, -2.0), (1.0e5, 62.0), (4.0e6, 1.0e4), (1.0e9, 0.0)]
 
 
@@ -53,10 +70,6 @@ def test_support_of_a_pole_is_the_inverse_of_the_first_pole(study_model, modes, 
     pole = first_pole(study_model, k, c)
     found = equivalent_support(modes, *frequency_of(pole))
     assert (found.k, found.c) == pytest.approx((k, c), rel=1.0e-5, abs=1.0e-4)
-    if k > 0.0:
-        assert (found.k, found.c) == pytest.approx(
-            support_from_pole(study_model, pole), rel=1.0e-4, abs=1.0e-3
-        )
 
 
 @pytest.mark.parametrize("k, c", [(1.0e3, 20.0), (1.0e5, 60.0), (4.0e6, 9.0e3)])
@@ -80,21 +93,11 @@ def test_jacobian_of_the_support(study_model, modes, k, c):
 def test_pole_above_the_clamped_frequency_has_no_support(study_model, modes):
     clamped = natural_frequencies(study_model, 1.0e12, 1)[0]
     assert equivalent_support(modes, 1.05 * clamped, 0.01).k == np.inf
-    with pytest.raises(ValueError, match="no support"):
-        support_from_pole(study_model, pole_of(1.05 * clamped, 0.01))
 
 
 @pytest.fixture(scope="module")
 def tube(study_model):
-    sensors = Sensors(("apex.y", "bend_45.y"), 0, 1, (0, 1))
-    return ReferenceTube(
-        study_model,
-        Bins(0.1, 1200, 80, 600, "hann"),
-        sensors,
-        (5.0, 200.0),
-        (6.0, 99.0),
-        (1.0e3, 1.0e8),
-    )
+    return ReferenceTube(study_model, LAYOUT)
 
 
 @pytest.mark.parametrize("k, c", [(1.0e4, 30.0), (1.0e6, 1000.0)])
@@ -149,16 +152,11 @@ def test_errors_of_the_model_near_the_free_tube(tube):
 
 def test_a_stiff_support_may_lift_every_mode_above_the_spectra(study_model):
     """Spectra to 20 Hz, of a tube at 16 Hz free and above 25 Hz on stiff supports."""
-    sensors = Sensors(("apex.y", "bend_45.y"), 0, 1, (0, 1))
-    narrow = ReferenceTube(
-        study_model,
-        Bins(0.1, 200, 80, 190, "hann"),
-        sensors,
-        (5.0, 20.0),
-        (6.0, 19.0),
-        (1.0e3, 1.0e8),
+    layout = replace(
+        LAYOUT, highest=200, line_last=190, force_band_Hz=(5.0, 20.0), broadband_Hz=(6.0, 19.0)
     )
-    assert narrow.frequency[-1] == 20.0
+    narrow = ReferenceTube(study_model, layout)
+    assert layout.frequency[-1] == 20.0
     for k in (1.0e3, 1.0e8):
         first = natural_frequencies(study_model, k, 1)[0]
         assert narrow.first_frequency(k) == pytest.approx(first, rel=2e-2)

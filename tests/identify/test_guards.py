@@ -19,6 +19,7 @@ from vibroimpact.identify.guards import beyond_checked, guarded
 from vibroimpact.identify.identify_case import identify_case, reference_tube
 from vibroimpact.identify.linear.responses import frf
 from vibroimpact.identify.reference_tube import STABLE_FRACTION
+from vibroimpact.identify.spectra_layout import spectra_layout
 from vibroimpact.identify.support_fit import Start, SupportSearch
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.energy_limit import energy_flag
@@ -214,7 +215,7 @@ def least_damping(tube):
     """The negative c in N s/m that takes all damping of a mode of the smoke tube."""
     config, model = tube
     spectra = LinearRecords(config, SENSORS, lambda f: np.ones((31, f.size))).exact("hann")
-    reference = reference_tube(config, model, spectra)
+    reference = reference_tube(model, spectra_layout(config, spectra))
     return reference.lowest_stable_damping(STIFFNESS) / STABLE_FRACTION
 
 

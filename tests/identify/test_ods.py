@@ -11,21 +11,28 @@ from vibroimpact.identify.linear.poles import first_pole, frequency_of
 from vibroimpact.identify.linear.responses import frf
 from vibroimpact.identify.ods import deflection_shape, linear_ods, mac, match_shape
 from vibroimpact.identify.peak import level_edges
-from vibroimpact.identify.reference_tube import Bins, ReferenceTube, Sensors
+from vibroimpact.identify.reference_tube import ReferenceTube
 from vibroimpact.identify.spectra.window_leakage import spectral_kernel
+from vibroimpact.identify.spectra_layout import SpectraLayout
 
 
 @pytest.fixture(scope="module")
 def tube(study_model):
-    sensors = Sensors(("apex.y", "bend_45.y"), 0, 1, (0, 1))
-    return ReferenceTube(
-        study_model,
-        Bins(0.1, 1200, 80, 600, "none"),
-        sensors,
-        (5.0, 200.0),
-        (6.0, 99.0),
-        (1.0e3, 1.0e8),
+    layout = SpectraLayout(
+        spacing_Hz=0.1,
+        highest=1200,
+        line_first=80,
+        line_last=600,
+        window="none",
+        sensors=("apex.y", "bend_45.y"),
+        response=0,
+        broadband=1,
+        references=(0, 1),
+        force_band_Hz=(5.0, 200.0),
+        broadband_Hz=(6.0, 99.0),
+        stiffness_range=(1.0e3, 1.0e8),
     )
+    return ReferenceTube(study_model, layout)
 
 
 def test_mac_sees_neither_size_nor_phase():

@@ -3,13 +3,12 @@
 import numpy as np
 import pytest
 
-from vibroimpact.identify.graded_supports import MethodResult, graded_supports
-from vibroimpact.identify.information import what_is_known
+from vibroimpact.identify.graded_supports import graded_supports, what_is_known
 from vibroimpact.identify.linear.poles import first_pole, frequency_of
 from vibroimpact.identify.linear.support_groups import grouped_supports, reached_supports
 from vibroimpact.identify.linear.supported_structure import SupportedStructure
 from vibroimpact.identify.pole_step import step_to_pole
-from vibroimpact.identify.support_fit import SupportSearch, inverse_information
+from vibroimpact.identify.support_fit import FoundSupports, SupportSearch, inverse_information
 
 NAMES = ("left.y", "right.y")
 
@@ -42,9 +41,7 @@ def test_with_one_support_the_pole_fixes_it_from_anywhere(study_model):
     pole = first_pole(study_model, k, c)
     found = step_to_pole(
         tube(study_model, "all"),
-        np.array([2.0e4]),
-        np.array([5.0]),
-        np.diag([1.0, 100.0**2]),
+        FoundSupports(np.array([2.0e4]), np.array([5.0]), np.diag([1.0, 100.0**2])),
         (*frequency_of(pole), np.zeros((2, 2))),
     )
     assert (found.k[0], found.c[0]) == pytest.approx((k, c), rel=1e-6)
@@ -56,7 +53,8 @@ def test_a_pole_moves_what_is_least_known(study_model):
     k, c = np.array([1.0e5, 1.0e5]), np.array([60.0, 60.0])
     pole = first_pole(study_model, 1.2e5, 60.0)
     covariance = np.diag([0.01**2, 1.0, 1.0, 100.0**2])
-    found = step_to_pole(structure, k, c, covariance, (*frequency_of(pole), np.zeros((2, 2))))
+    start = FoundSupports(k, c, covariance)
+    found = step_to_pole(structure, start, (*frequency_of(pole), np.zeros((2, 2))))
     assert found.k[0] == pytest.approx(1.0e5, rel=1e-3) and found.k[1] > 1.3e5
     reached, _ = structure.pole(found.k, found.c, pole)
     assert reached == pytest.approx(pole, rel=1e-6)
@@ -68,8 +66,9 @@ def test_a_pole_moves_what_is_least_known(study_model):
 def test_a_soft_support_must_differ_from_zero_a_stiff_one_not(study_model, k, error, resolved):
     structure = tube(study_model, "all")
     covariance = np.diag([error**2, 1.0])
-    found = MethodResult("broadband", np.array([k]), np.array([50.0]), covariance, None)
-    (estimate,) = graded_supports(found, structure, SupportSearch((1.0, 1.0e9), 130.0))
+    found = FoundSupports(np.array([k]), np.array([50.0]), covariance)
+    search = SupportSearch((1.0, 1.0e9), 130.0)
+    (estimate,) = graded_supports("broadband", found, structure, search)
     assert np.isfinite(estimate.k) == resolved
     assert resolved or "does not differ from 0" in estimate.note
 

@@ -11,9 +11,11 @@ from scipy import optimize
 
 from evidence.validation.prediction.responses import synthesise_records
 from vibroimpact.config.reading import load_config
+from vibroimpact.identify.equivalent_support import equivalent_support
 from vibroimpact.identify.linear import responses
+from vibroimpact.identify.linear.family import driven_modes
 from vibroimpact.identify.linear.modes import first_mode_shape, natural_frequencies
-from vibroimpact.identify.linear.poles import first_pole, support_from_pole
+from vibroimpact.identify.linear.poles import first_pole, frequency_of
 from vibroimpact.identify.linear.responses import frf, psd_family
 from vibroimpact.reduction.reduced_model import build_model
 
@@ -144,16 +146,13 @@ def test_very_strong_damper_acts_as_a_clamp(model):
     ],
 )
 def test_support_comes_back_from_its_pole(model, k, c):
-    back = support_from_pole(model, first_pole(model, k, c))
-    assert back == pytest.approx((k, c), rel=1e-6, abs=1e-6 * k)
+    back = equivalent_support(driven_modes(model), *frequency_of(first_pole(model, k, c)))
+    assert (back.k, back.c) == pytest.approx((k, c), rel=1e-6, abs=1e-6 * k)
 
 
 def test_no_support_gives_a_pole_above_the_clamped_one(model):
-    clamped = abs(first_pole(model, 1.0e12, 0.0))
-    with pytest.raises(ValueError, match="no support gives the first mode the pole"):
-        support_from_pole(model, clamped * complex(-0.005, 1.05))
-    with pytest.raises(ValueError, match="positive imaginary part"):
-        support_from_pole(model, complex(-1.0, -100.0))
+    clamped, _ = frequency_of(first_pole(model, 1.0e12, 0.0))
+    assert equivalent_support(driven_modes(model), 1.05 * clamped, 0.005).k == np.inf
 
 
 def test_support_that_buckles_the_tube_is_refused(model):
@@ -171,8 +170,6 @@ def test_first_mode_shape_is_the_lowest_driven_eigenvector(model):
         assert shape == pytest.approx(
             expected * np.sign(expected @ shape), rel=1e-6, abs=1e-8 * shape.max()
         )
-    apex = first_mode_shape(model, 1.0e4, model.sensor_shapes)[model.sensor_names.index("apex.y")]
-    assert apex == pytest.approx(first_mode_shape(model, 1.0e4)[13], rel=1e-6)
 
 
 @pytest.mark.parametrize("k, c", SUPPORTS)
@@ -217,10 +214,6 @@ def test_psd_family_is_the_dense_response_for_every_support(request, name):
                 np.abs(model.sensor_shapes[:, sensor] @ dense_response(model, k, c, frequency)) ** 2
             )
             assert family[row, column] == pytest.approx(expected, rel=1e-7)
-    acceleration = psd_family(
-        model, k_grid, c_grid, frequency, model.sensor_shapes[:, sensor], "acceleration"
-    )
-    assert acceleration == pytest.approx(family * (2.0 * np.pi * frequency) ** 4)
 
 
 def test_reciprocity_and_limits(model):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -86,19 +87,15 @@ def equivalent(
     return Answer(folder.name, "study", load_rms_N, gap_m, answers, not effects, _notes(effects))
 
 
+@dataclass(frozen=True)
 class _Asked:
     """The question: load in N, gap in m, and the level that the tables are read at."""
 
-    def __init__(
-        self,
-        load_rms_N: float,
-        gap_m: float,
-        level: float,
-        level_of: Callable[[dict[str, Any]], float],
-        homogeneous: bool,
-    ) -> None:
-        self.load_rms_N, self.gap_m = load_rms_N, gap_m
-        self.level, self.level_of, self.homogeneous = level, level_of, homogeneous
+    load_rms_N: float
+    gap_m: float
+    level: float
+    level_of: Callable[[dict[str, Any]], float]
+    homogeneous: bool
 
     def rows_of(self, rows: Rows) -> Rows:
         """Return the rows of the very case if the study has it, else all rows."""

@@ -50,7 +50,7 @@ def standard_errors(covariance: np.ndarray) -> np.ndarray:
 def estimate_from_pole(
     method: str, fit: PeakFit | OperationalPole | None, tube: ReferenceTube
 ) -> Estimate:
-    """Return the Estimate of a fitted pole."""
+    """Return the Estimate of the pole of a peak, or of LSCF."""
     if fit is None:
         return unresolved(method, "no resonance could be fitted to the main peak")
     support = equivalent_support(tube.modes, fit.frequency, fit.damping_ratio)
@@ -66,27 +66,27 @@ def estimate_from_pole(
     )
     model_error = abs(support.jacobian[0, 0]) * FREQUENCY_ERROR * fit.frequency
     limit = DAMPING_RATIO_LIMIT * fit.damping_ratio * abs(support.jacobian[1, 1])
-    estimate = grade(estimate, model_error, tube.pole_error_at_zero, tube.stiffness_range, limit)
+    estimate = grade(
+        estimate, model_error, tube.pole_error_at_zero, tube.layout.stiffness_range, limit
+    )
     if np.isfinite(estimate.k):
         pole = (fit.frequency, fit.damping_ratio)
         estimate = flagged(estimate, other_mode(tube.model, support.k, support.c, pole))
-    return estimate
+    return with_doubts(estimate, fit, tube.layout.seen_band_Hz)
 
 
-def estimate_from_peak(method: str, fit: PeakFit | None, tube: ReferenceTube) -> Estimate:
-    """Return the Estimate of the width of the main peak at one level."""
-    estimate = estimate_from_pole(method, fit, tube)
-    if fit is None:
-        return estimate
-    return flagged(estimate, peak_not_crossed(fit, tube.seen_band_Hz))
+def with_doubts(
+    estimate: Estimate, fit: PeakFit | OperationalPole | None, seen_band_Hz: Sequence[float]
+) -> Estimate:
+    """Return the estimate with the flag of a peak that is not crossed, or weak by a doubtful pole.
 
-
-def estimate_from_operational_pole(pole: OperationalPole | None, tube: ReferenceTube) -> Estimate:
-    """Return the Estimate of the LSCF pole."""
-    estimate = estimate_from_pole("lscf", pole, tube)
-    if pole is not None and not pole.stable:
-        note = f"no single pole is stable from order to order; order {pole.order} taken"
-        estimate = mark_weak(estimate, note)
+    seen_band_Hz: in which the force has power and the spectra have bins.
+    """
+    if isinstance(fit, PeakFit):
+        return flagged(estimate, peak_not_crossed(fit, seen_band_Hz))
+    if fit is not None and not fit.stable:
+        note = f"no single pole is stable from order to order; order {fit.order} taken"
+        return mark_weak(estimate, note)
     return estimate
 
 
@@ -107,7 +107,7 @@ def estimate_from_shape(
     error = float(np.sqrt(variance + match.damping_change**2))
     estimate = Estimate("ods", match.k, match.k * error)
     model_error = match.k * match.model_error
-    estimate = grade(estimate, model_error, tube.shape_error_at_zero, tube.stiffness_range)
+    estimate = grade(estimate, model_error, tube.shape_error_at_zero, tube.layout.stiffness_range)
     if match.mac < LOWEST_MAC:
         estimate = mark_weak(estimate, f"best MAC only {match.mac:.2f}")
     return estimate
@@ -128,7 +128,9 @@ def estimate_from_broadband(fit: BroadbandFit | None, tube: ReferenceTube) -> Es
         "broadband", fit.k, float(errors[0]), fit.c, float(errors[1]), frequency, ratio
     )
     limit = DAMPING_RATIO_LIMIT * abs(ratio) / tube.damping_ratio_slope(fit.k)
-    estimate = grade(estimate, model_error, tube.pole_error_at_zero, tube.stiffness_range, limit)
+    estimate = grade(
+        estimate, model_error, tube.pole_error_at_zero, tube.layout.stiffness_range, limit
+    )
     if fit.c_at_edge:
         estimate = without_damping(estimate)
     if fit.correlation < LOWEST_CORRELATION:

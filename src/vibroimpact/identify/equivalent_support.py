@@ -3,9 +3,8 @@
 A complex lambda is a pole of the tube with support s = k + lambda c exactly when s = -1/mu for an
 eigenvalue mu of the contact compliance G at lambda. So no search is needed: the imaginary part of s
 gives c, the rest k. The first mode's eigenvalue is the one with a positive k, the smallest if there
-are several: supports that stiffen other modes down to this pole are negative.
-`linear.poles.support_from_pole` follows the first mode of every candidate from c = 0 instead; it
-is slower and checks this module.
+are several: supports that stiffen other modes down to this pole are negative. Its inverse is
+`linear.poles.first_pole`.
 """
 
 from dataclasses import dataclass

@@ -6,7 +6,8 @@ at the support. So its sensitivity to k is (1 + k G)² times smaller than at k =
 k as much larger.
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -21,40 +22,33 @@ from .estimate import (
     WEAK_ABOVE,
     Estimate,
     edge_of_range,
+    joined,
     mark_weak,
+    unresolved,
 )
-from .information import what_is_known
-from .support_fit import SupportSearch
+from .support_fit import FoundSupports, SupportSearch
 
 # c is resolved when its standard error is below one of these: of its own size, and as a loss factor
 # omega c / k at the main peak.
 C_ERROR, LOSS_ERROR = 0.5, 0.15
 
-
-@dataclass(frozen=True)
-class MethodResult:
-    """The supports that a method found.
-
-    k, c: (direction,) N/m and N s/m; c is NaN if the method does not give it.
-    covariance: (2 direction, 2 direction) of (ln k, c).
-    by_frequency: (2 direction,) change of (ln k, c) per relative error of the model's frequencies;
-        None if the covariance holds the model's error.
-    frequency, damping_ratio: of the pole, Hz and fraction; NaN for none.
-    """
-
-    method: str
-    k: np.ndarray
-    c: np.ndarray
-    covariance: np.ndarray
-    by_frequency: np.ndarray | None
-    frequency: float = np.nan
-    damping_ratio: float = np.nan
+KNOWN = 0.25  # largest standard deviation of ln of a combination that counts as known
+LEAST_POWER = 0.3  # smallest power that a stiffness must have to be part of a combination
+SHOWN_POWER = 0.15
 
 
 def graded_supports(
-    found: MethodResult, structure: SupportedStructure, search: SupportSearch
+    method: str,
+    found: FoundSupports,
+    structure: SupportedStructure,
+    search: SupportSearch,
+    frequency: float = np.nan,
+    damping_ratio: float = np.nan,
 ) -> list[Estimate]:
-    """Return the Estimate of each direction; k and c are NaN if they are not resolved."""
+    """Return the Estimate of each direction; k and c are NaN if they are not resolved.
+
+    frequency, damping_ratio: of the pole behind them, Hz and fraction; NaN for none.
+    """
     directions = structure.directions
     count = len(directions)
     total = found.covariance
@@ -65,14 +59,7 @@ def graded_supports(
     names = [direction.name for direction in directions]
     estimates = []
     for index, direction in enumerate(directions):
-        k, error = found.k[index], float(np.sqrt(total[index, index]))
-        estimate = Estimate(
-            method=found.method,
-            k=float(k),
-            k_standard_error=float(k * np.sqrt(found.covariance[index, index])),
-            frequency=found.frequency,
-            damping_ratio=found.damping_ratio,
-        ).at(direction)
+        k, error = float(found.k[index]), float(np.sqrt(total[index, index]))
         chance = float(np.sqrt(found.covariance[index, index]))
         floor = MODEL_SIGMAS * np.sqrt(max(error**2 - chance**2, 0.0)) + CHANCE_SIGMAS * chance
         reason = _why_unresolved(k, error, search)
@@ -87,20 +74,16 @@ def graded_supports(
                 names, total[:count, :count], index
             )
         if reason:
-            estimate = replace(
-                estimate,
-                k=np.nan,
-                k_standard_error=np.nan,
-                quality="unresolved",
-                note=reason,
-                k_bound=bound,
-            )
-            estimates.append(estimate)
+            estimate = unresolved(method, reason, frequency, damping_ratio)
+            estimates.append(replace(estimate, k_bound=bound).at(direction))
             continue
+        estimate = Estimate(
+            method, k, k * chance, frequency=frequency, damping_ratio=damping_ratio
+        ).at(direction)
         if error > WEAK_ABOVE:
             estimate = mark_weak(estimate, f"standard error {error:.0%} of k")
         c_error = float(np.sqrt(total[count + index, count + index]))
-        estimates.append(_with_damping(estimate, found.c[index], c_error, search))
+        estimates.append(_with_damping(estimate, float(found.c[index]), c_error, search))
     return estimates
 
 
@@ -117,5 +100,28 @@ def _with_damping(estimate: Estimate, c: float, error: float, search: SupportSea
         return estimate
     if error > C_ERROR * abs(c) and error * search.omega > LOSS_ERROR * estimate.k:
         note = f"c = {c:.3g} +- {error:.2g} N s/m not resolved"
-        return replace(estimate, note="; ".join(part for part in (estimate.note, note) if part))
-    return replace(estimate, c=float(c), c_standard_error=error)
+        return replace(estimate, note=joined(estimate.note, note))
+    return replace(estimate, c=c, c_standard_error=error)
+
+
+def what_is_known(names: Sequence[str], covariance: np.ndarray, index: int) -> str:
+    """Return a sentence on a stiffness that is not known alone, but perhaps in combination.
+
+    A combination of stiffnesses, a product of powers, is an eigenvector of the covariance of ln k.
+    Its variance is the eigenvalue.
+
+    names: (direction,) of the stiffnesses.
+    covariance: (direction, direction) of ln k.
+    index: of the stiffness.
+    """
+    variances, vectors = np.linalg.eigh(covariance)
+    variances = np.maximum(variances, 0.0)  # a round-off below 0
+    for variance, vector in zip(variances, vectors.T, strict=True):
+        partners = np.flatnonzero(np.abs(vector) > SHOWN_POWER).tolist()
+        if np.sqrt(variance) < KNOWN and abs(vector[index]) > LEAST_POWER and len(partners) > 1:
+            vector = vector * np.sign(vector[index])
+            product = " ".join(f"k({names[i]})^{vector[i]:.2f}" for i in partners)
+            return f"only the product {product} is known, within {np.sqrt(variance):.0%}"
+    scatter = np.sqrt(covariance[index, index])
+    size = f"a factor of {np.exp(scatter):.3g}" if scatter < 5.0 else "more than a factor of 100"
+    return f"a change of k by {size} is within the scatter of the data"

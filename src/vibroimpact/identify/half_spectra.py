@@ -9,6 +9,8 @@ import numpy as np
 
 from vibroimpact.identify.spectra.window_leakage import window_autocorrelation
 
+LAST_WEIGHT = 0.01
+
 
 @dataclass(frozen=True)
 class LagWindow:
@@ -22,9 +24,7 @@ class LagWindow:
     decay: float
 
 
-def lag_window(
-    window: str, samples: int, segment_s: float, longest_lag_s: float, last_weight: float = 0.01
-) -> LagWindow:
+def lag_window(window: str, samples: int, segment_s: float, longest_lag_s: float) -> LagWindow:
     """Return the LagWindow: an exponential over the autocorrelation of the analysis window.
 
     Division by the autocorrelation removes the window's widening of the peaks exactly. The
@@ -32,10 +32,10 @@ def lag_window(
 
     window: name of the analysis window.
     samples: lags in one segment of segment_s seconds.
-    longest_lag_s: s, at which the exponential has fallen to last_weight.
+    longest_lag_s: s, at which the exponential has fallen to LAST_WEIGHT.
     """
     lags = max(2, min(int(longest_lag_s / segment_s * samples), samples // 2))
-    decay = -np.log(last_weight) / longest_lag_s
+    decay = -np.log(LAST_WEIGHT) / longest_lag_s
     exponential = np.exp(-decay * np.arange(lags) * (segment_s / samples))
     weights = exponential / window_autocorrelation(window, samples, lags)
     weights[0] *= 0.5  # lag 0 belongs half to each side

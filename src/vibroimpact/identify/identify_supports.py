@@ -6,28 +6,32 @@ main mode the measured pole.
 """
 
 from dataclasses import dataclass, replace
-from typing import Any
+from functools import partial
 
 import numpy as np
 import xarray as xr
 
 from vibroimpact.config.stage_settings import ConfigPart
-from vibroimpact.identify.spectra.welch import complex_values
 
-from .broadband import NEEDS_FORCE, UNKNOWN
-from .case_estimates import LOWEST_CORRELATION, LOWEST_MAC, ONE_SENSOR, without_damping
-from .estimate import Estimate, flagged, mark_weak, unresolved
-from .graded_supports import MethodResult, graded_supports
-from .guards import peak_not_crossed
-from .ods import DeflectionShape, deflection_shape
-from .operational_pole import OperationalPole, PoleSearch, operational_pole
-from .peak import LEVELS, PeakFit, find_peak, fit_peak
-from .pole_step import PoleStep, step_to_pole
-from .segment_scatter import effective_duration
+from .broadband import NEEDS_FORCE
+from .case_estimates import (
+    LOWEST_CORRELATION,
+    LOWEST_MAC,
+    ONE_SENSOR,
+    with_doubts,
+    without_damping,
+)
+from .estimate import Estimate, mark_weak, unresolved
+from .graded_supports import graded_supports
+from .observed_case import ObservedCase
+from .ods import DeflectionShape
+from .operational_pole import OperationalPole
+from .peak import LEVELS, PeakFit
+from .pole_step import step_to_pole
 from .solvable import or_none
 from .support_fit import Start, SupportSearch, inverse_information
 from .supports_by_shapes import ShapeComparison, ShapesFit, block_shapes
-from .supports_by_spectra import CoarseCost, SpectraComparison, SpectraFit
+from .supports_by_spectra import SpectraComparison, SpectraFit
 from .supports_tube import SupportsTube
 
 SHAPE_LOSS = 0.1  # loss factor of the supports at the start of the search by shapes
@@ -48,46 +52,29 @@ class SupportsResult:
     shapes: ShapesFit | None
 
 
-class SupportsCase:
+class SupportsCase(ObservedCase):
     """The spectra of one case, and the fit of each method to them."""
 
-    def __init__(self, spectra: xr.Dataset, tube: SupportsTube, config: ConfigPart) -> None:
-        self.tube, self.config = tube, config
-        self.averages = float(spectra["effective_averages"])
-        self.force_known = spectra.attrs.get("force") != UNKNOWN
-        self.outputs = complex_values(spectra, "sensor_spectra")
-        self.line = complex_values(spectra, "line_spectra")
-        self.line_frequency = spectra["line_frequency"].values
-        response = self.outputs[tube.sensors.response]
-        self.segments = response.real**2 + response.imag**2
-        self.psd = self.segments.mean(axis=0)
-        self.peak = find_peak(tube.frequency, self.psd, config.peak_search_Hz)
-        self.search = SupportSearch(tube.stiffness_range, 2.0 * np.pi * self.peak[0])
+    def __init__(self, spectra: xr.Dataset, tube: SupportsTube, identification: ConfigPart) -> None:
+        super().__init__(spectra, tube.layout, identification)
+        self.tube = tube
+        self.search = SupportSearch(tube.layout.stiffness_range, 2.0 * np.pi * self.peak[0])
 
     def fit(self) -> SupportsResult:
-        """Return the SupportsResult."""
+        """Return the SupportsResult.
+
+        The peaks and the pole need the structure on the supports that spectra or shapes gave.
+        """
         shapes = or_none(self.by_shapes)
         spectra = or_none(self.by_spectra, shapes)
         peaks: dict[str, PeakFit | None] = dict.fromkeys(LEVELS)
         pole = None
         start = spectra or shapes
         if start is not None:
-            values = start.values
-            other = self.tube.other_modes(values.k, values.c)
-            for method, level in LEVELS.items():
-                peaks[method] = or_none(
-                    fit_peak,
-                    self.tube.frequency,
-                    self.psd,
-                    self.tube.kernel,
-                    level,
-                    self.peak,
-                    other,
-                    self.averages,
-                    self.segments,
-                )
-            pole = or_none(self.operational_pole, start)
-        shape = or_none(self.main_shape, peaks["peak_25th"])
+            supports = start.values.k, start.values.c
+            peaks = self.peak_fits(self.tube.other_modes(*supports))
+            pole = or_none(lambda: self.operational_pole(self.tube.cross_spectra(*supports)))
+        shape = or_none(self.main_shape, peaks["peak_25th"], 1)
         return SupportsResult(peaks, pole, shape, spectra, shapes)
 
     def by_spectra(self, shapes: ShapesFit | None) -> SpectraFit | None:
@@ -96,15 +83,18 @@ class SupportsCase:
         The supports of the shapes are one more start: spectra alone have more false minima.
         """
         tube = self.tube
-        values = self.outputs[:, :, tube.broadband]
+        values = self.outputs[:, :, tube.layout.broadband_bins]
         if not values.any() or not self.force_known:  # no bins, no motion, or no force
             return None
         segments = (values.real**2 + values.imag**2).swapaxes(0, 1)
         moving = segments.any(axis=(0, 2))  # a dead sensor, or one at a node
         comparison = SpectraComparison(
-            tube.structure, tube.at_broadband.outputs(moving), tube.kernel, segments[:, moving]
+            tube.structure,
+            tube.at_broadband.outputs(moving),
+            tube.layout.kernel,
+            segments[:, moving],
         )
-        coarse = CoarseCost(comparison, tube.at_broadband_bins.outputs(moving))
+        coarse = partial(comparison.coarse_cost, tube.at_broadband_bins.outputs(moving))
         starts = self.search.coarse_starts(coarse, len(tube.directions))
         if shapes is not None:
             starts.append(Start(np.log(shapes.values.k), SHAPE_LOSS))
@@ -115,71 +105,38 @@ class SupportsCase:
 
     def by_shapes(self) -> ShapesFit | None:
         """Return the ShapesFit, or None if nothing along the line moves, or one point does."""
-        tube, kernel = self.tube, self.tube.kernel
+        tube, layout = self.tube, self.layout
         if len(self.line) < 2 or not np.any(tube.model.line_shapes[tube.structure.modes]):
             return None
-        measured = block_shapes(self.line, self.line_frequency, kernel)
+        measured = block_shapes(self.line, self.line_frequency, layout.kernel)
         fine = tube.structure.frequency[tube.at_line.part]
         comparison = ShapeComparison(
-            tube.structure, tube.at_line, measured, self.search, tube.force_psd(fine)
+            tube.structure, tube.at_line, measured, self.search, layout.excited(fine)
         )
+        kernel = layout.kernel
         taps = slice(kernel.half_width, -kernel.half_width or None, kernel.oversampling)
         coarse = ShapeComparison(
             tube.structure,
             tube.at_line_bins,
             replace(measured, weights=measured.weights[:, taps]),
             self.search,
-            tube.force_psd(self.line_frequency),
+            layout.excited(self.line_frequency),
         )
         starts = self.search.coarse_starts(coarse.cost, len(tube.directions), (SHAPE_LOSS,))
         return comparison.fit(starts, tube.lowest_stable_damping)
-
-    def operational_pole(self, start: SpectraFit | ShapesFit) -> OperationalPole | None:
-        """Return the OperationalPole of the main peak, or None.
-
-        start: whose structure gives the bias of the estimator.
-        """
-        lscf, tube = self.config.lscf, self.tube
-        search = PoleSearch(tube.frequency, tuple(lscf.band_Hz), tube.bins.window, lscf.max_order)
-        values = start.values
-        return operational_pole(
-            self.outputs,
-            tube.sensors.references,
-            search,
-            self.peak,
-            self.averages,
-            effective_duration(self.averages, tube.kernel),
-            tube.cross_spectra(values.k, values.c),
-        )
-
-    def main_shape(self, fit: PeakFit | None) -> DeflectionShape | None:
-        """Return the shape of the band above 1/25 of the main peak, or None without a peak."""
-        if fit is None:
-            return None
-        edges = np.clip(fit.edges_Hz, self.line_frequency[0], self.line_frequency[-1])
-        if edges[1] - edges[0] < self.tube.bins.spacing_Hz:
-            return None
-        return deflection_shape(self.line, self.line_frequency, tuple(edges))
 
 
 def estimates_of_supports(case: SupportsCase, result: SupportsResult) -> list[Estimate]:
     """Return the Estimates of all methods for every direction, method by method."""
     found: list[Estimate] = []
-    poles: dict[str, Any] = {**result.peaks, "lscf": result.pole}
-    for method, fit in poles.items():
+    for method, fit in {**result.peaks, "lscf": result.pole}.items():
         estimates = _estimates_by_pole(case, result, method, fit)
-        if isinstance(fit, PeakFit):
-            flag = peak_not_crossed(fit, case.tube.seen_band_Hz)
-            estimates = [flagged(estimate, flag) for estimate in estimates]
-        if method == "lscf" and result.pole is not None and not result.pole.stable:
-            note = f"no single pole is stable from order to order; order {result.pole.order} taken"
-            estimates = [mark_weak(estimate, note) for estimate in estimates]
-        found += estimates
+        found += [with_doubts(each, fit, case.layout.seen_band_Hz) for each in estimates]
     return found + _estimates_by_shapes(case, result) + _estimates_by_spectra(case, result)
 
 
-def _unresolved(case: SupportsCase, method: str, note: str, **pole: float) -> list[Estimate]:
-    return [unresolved(method, note, **pole).at(direction) for direction in case.tube.directions]
+def _unresolved(case: SupportsCase, method: str, note: str, *pole: float) -> list[Estimate]:
+    return [unresolved(method, note, *pole).at(direction) for direction in case.tube.directions]
 
 
 def _estimates_by_pole(
@@ -191,36 +148,28 @@ def _estimates_by_pole(
     """Return the Estimates of the step that a pole adds to the broadband comparison."""
     if fit is None:
         return _unresolved(case, method, "no resonance could be fitted to the main peak")
-    known = {"frequency": fit.frequency, "damping_ratio": fit.damping_ratio}
+    main = fit.frequency, fit.damping_ratio
     if result.spectra is None:
         note = f"a pole alone tells no support from others; {_why(case)}"
-        return _unresolved(case, method, note, **known)
-    start = result.spectra
-    pole = (fit.frequency, fit.damping_ratio, fit.covariance)
-    covariance = start.covariance if np.any(start.covariance) else _shape_of(start)
-    step: PoleStep | None = step_to_pole(
-        case.tube.structure, start.values.k, start.values.c, covariance, pole
-    )
+        return _unresolved(case, method, note, *main)
+    found = result.spectra.found
+    scattered = bool(np.any(found.covariance))
+    if not scattered:  # spectra without scatter: the shape of the covariance, without a size
+        jacobian = result.spectra.values.jacobian
+        found = replace(found, covariance=inverse_information(jacobian))
+    step = step_to_pole(case.tube.structure, found, (*main, fit.covariance))
     if step is None:
-        return _unresolved(case, method, "no supports give the main mode this pole", **known)
-    scatter = step.covariance if np.any(start.covariance) else np.zeros_like(step.covariance)
-    found = MethodResult(method, step.k, step.c, scatter, step.by_frequency, **known)
-    return graded_supports(found, case.tube.structure, case.search)
+        return _unresolved(case, method, "no supports give the main mode this pole", *main)
+    if not scattered:
+        step = replace(step, covariance=np.zeros_like(step.covariance))
+    return graded_supports(method, step, case.tube.structure, case.search, *main)
 
 
 def _why(case: SupportsCase) -> str:
     """Return why there is no broadband comparison."""
-    return _no_spectra(case) if case.force_known else NEEDS_FORCE
-
-
-def _shape_of(fit: SpectraFit) -> np.ndarray:
-    """Return the covariance of spectra without scatter: its shape, without a size."""
-    return inverse_information(fit.values.jacobian)
-
-
-def _no_spectra(case: SupportsCase) -> str:
-    """Return why the broadband comparison found nothing."""
-    if not case.tube.frequency[case.tube.broadband].size:
+    if not case.force_known:
+        return NEEDS_FORCE
+    if not case.layout.frequency[case.layout.broadband_bins].size:
         return "the force has no power in the band of the comparison"
     return "no supports have these spectra"
 
@@ -231,11 +180,7 @@ def _estimates_by_shapes(case: SupportsCase, result: SupportsResult) -> list[Est
     if fit is None:
         still = "no supports have the shapes of the shape line"
         return _unresolved(case, "ods", ONE_SENSOR if len(case.line) < 2 else still)
-    # The error of the model is part of the covariance already.
-    found = MethodResult(
-        "ods", fit.values.k, np.full(len(fit.values.k), np.nan), fit.covariance, None
-    )
-    estimates = graded_supports(found, case.tube.structure, case.search)
+    estimates = graded_supports("ods", fit.found, case.tube.structure, case.search)
     if fit.mac < LOWEST_MAC:
         estimates = [mark_weak(item, f"mean MAC only {fit.mac:.2f}") for item in estimates]
     return estimates
@@ -246,11 +191,10 @@ def _estimates_by_spectra(case: SupportsCase, result: SupportsResult) -> list[Es
     fit = result.spectra
     if fit is None:
         return _unresolved(case, "broadband", _why(case))
-    found = MethodResult("broadband", fit.values.k, fit.values.c, fit.covariance, fit.model_change)
     estimates = [
         without_damping(estimate) if at_edge else estimate
         for estimate, at_edge in zip(
-            graded_supports(found, case.tube.structure, case.search),
+            graded_supports("broadband", fit.found, case.tube.structure, case.search),
             fit.values.c_at_edge,
             strict=True,
         )

@@ -5,7 +5,6 @@ Source: K. Levenberg, Quart. Appl. Math. 2 (1944) 164-168; D.W. Marquardt, SIAM 
 (1963) 431-441. Departure: the damping acts along each value by the length of its column.
 """
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -45,22 +44,19 @@ def minimise(
     start: np.ndarray,
     passes: int,
     settled: float = SETTLED,
-    seconds: float = np.inf,
-    told: Callable[[int, float], None] | None = None,
     error_of: ErrorOf | None = None,
 ) -> Minimum:
     """Return the Minimum of |error|² from a start (value,).
 
     evaluate(values): (error (residual,), Jacobian (residual, value)).
     error_of(values): the error of a trial step, None if it fails; that of evaluate by default.
-    passes, seconds: the most of both.
+    passes: at most.
     settled: relative decrease of the cost in a pass at which it ends.
-    told(pass, cost): called after each pass.
 
     It also ends if no step lowers the cost. Raises ValueError if the start has no finite
     error.
     """
-    began, values, damping = time.monotonic(), np.asarray(start, float), FIRST_DAMPING
+    values, damping = np.asarray(start, float), FIRST_DAMPING
     error_at: ErrorOf = error_of or (lambda trial: evaluate(trial)[0])
     error, slope = evaluate(values)
     if not np.isfinite(error).all():
@@ -80,13 +76,7 @@ def minimise(
         else:
             break
         values, error, damping = values + step, tried, max(damping * LOWER, 1.0e-9)
-        if told:
-            told(done, float(error @ error))
-        if (
-            before - error @ error < settled * before
-            or time.monotonic() - began > seconds
-            or done == passes
-        ):
+        if before - error @ error < settled * before or done == passes:
             break
         error, slope = evaluate(values)
     return Minimum(values, error, slope, done)

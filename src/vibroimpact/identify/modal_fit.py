@@ -14,8 +14,7 @@ from vibroimpact.identify.least_squares import minimise
 from vibroimpact.identify.spectra.periodic_lines import LevelLines
 from vibroimpact.reduction.modal_structure import IdentifiedModes
 
-from .stabilisation import StabilisationChart
-from .stable_poles import stable_poles
+from .stabilisation import StabilisationChart, stable_poles
 
 BELOW, ABOVE = 0.4, 1.35  # residual modes, times the ends of the band
 RESIDUAL_RATIOS = (0.2, 0.01)
@@ -26,6 +25,7 @@ SMALL_SHAPE = 1.0e-3
 # Penalties in units of the relative error: per shape as large as all modes together, per relative
 # change of a frequency (a tenth of it for residual modes), and per change of a damping ratio by a
 # factor of e. They keep values that the record does not determine near the start.
+PASSES = 60  # of the refinement, at most
 RIDGE, FREQUENCY_RIDGE, RATIO_RIDGE = 3.0e-3, 0.4, 0.01
 
 
@@ -132,10 +132,7 @@ def with_residues(
 
 
 def refine_modes(
-    modes: IdentifiedModes,
-    levels: Sequence[LevelLines],
-    band_Hz: Sequence[float],
-    passes: int = 60,
+    modes: IdentifiedModes, levels: Sequence[LevelLines], band_Hz: Sequence[float]
 ) -> IdentifiedModes:
     """Return the modes of least relative error over all records, by Levenberg-Marquardt."""
     weights, wanted = zip(*(_weighted(level, band_Hz) for level in levels), strict=True)
@@ -157,7 +154,7 @@ def refine_modes(
             [slope.real, slope.imag, np.diag(ridge.weight)]
         )
 
-    return unpack(minimise(evaluate, pack(modes), passes).values, modes)
+    return unpack(minimise(evaluate, pack(modes), PASSES).values, modes)
 
 
 class Ridge:

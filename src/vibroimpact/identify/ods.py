@@ -14,7 +14,6 @@ band.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -149,18 +148,21 @@ def match_shape(
         for other in measured.segment_shapes
     ]
     changes = np.array(pulls) / strength
-    higher, lower = (
-        _change_with_damping(family, member, log_k, errors, middle, slope, strength)
-        for errors in (1.0, -1.0)
-    )
+
+    def change_with_damping(errors: float) -> float:
+        """Return the change of ln k when the peak's damping is `errors` standard errors higher."""
+        moved = _phase_aligned(family.shape(log_k, errors), middle)
+        moved_k = np.vdot(slope, moved).real / strength
+        return float(np.log(abs(member(log_k, errors)[0] / member(log_k)[0])) - moved_k)
+
+    higher, lower = change_with_damping(1.0), change_with_damping(-1.0)
     model_error = GAIN_ERROR * np.sqrt(np.sum(np.abs(slope * shape) ** 2)) / strength
     # The damping is as likely too high as too low, but k does not respond to both alike: the mean
     # of the two changes is removed.
     k = member(log_k)[0] * np.exp(-0.5 * (higher + lower))
-    value = float(mac(measured.shape, middle))
     return ShapeMatch(
         k=float(k),
-        mac=value,
+        mac=float(mac(measured.shape, middle)),
         model_error=float(model_error),
         segment_changes=changes,
         damping_change=float(0.5 * (higher - lower)),
@@ -169,27 +171,15 @@ def match_shape(
     )
 
 
-def _change_with_damping(
-    family: Any,
-    member: Callable[..., tuple[float, float]],
-    log_k: float,
-    errors: float,
-    middle: np.ndarray,
-    slope: np.ndarray,
-    strength: float,
-) -> float:
-    """Return the change of ln k when the peak's damping is `errors` standard errors higher."""
-    moved = np.vdot(slope, _phase_aligned(family.shape(log_k, errors), middle)).real / strength
-    return np.log(abs(member(log_k, errors)[0] / member(log_k)[0])) - moved
-
-
 class _FamilyShapes:
     """The shapes of the members of the family over one band, by ln k."""
 
-    def __init__(self, response, part, member):
+    def __init__(
+        self, response: FamilyResponse, part: slice, member: Callable[..., tuple[float, float]]
+    ) -> None:
         self._response, self._part, self._member = response, part, member
 
-    def shape(self, log_k, errors=0.0):
+    def shape(self, log_k: float, errors: float = 0.0) -> np.ndarray:
         """Return the ODS (line_point,) of the member."""
         return linear_ods(self._response, self._part, *self._member(log_k, errors))
 

@@ -5,45 +5,29 @@ another method found, as little as their covariance allows, until the main mode 
 one support this gives the support of the pole itself, wherever it starts.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from vibroimpact.identify.linear.poles import frequency_of, pole_of
 from vibroimpact.identify.linear.supported_structure import SupportedStructure
+
+from .support_fit import FoundSupports
 
 PASSES = 8
 LARGEST_CHANGE = 0.7  # of ln k in one pass
 SETTLED = 1.0e-8
 
 
-@dataclass(frozen=True)
-class PoleStep:
-    """Supports that give the main mode a pole.
-
-    k, c: (direction,) N/m and N s/m.
-    covariance: (2 direction, 2 direction) of (ln k, c).
-    by_frequency: (2 direction,) change of (ln k, c) per relative change of the frequency.
-    """
-
-    k: np.ndarray
-    c: np.ndarray
-    covariance: np.ndarray
-    by_frequency: np.ndarray
-
-
 def step_to_pole(
     structure: SupportedStructure,
-    k: np.ndarray,
-    c: np.ndarray,
-    covariance: np.ndarray,
+    found: FoundSupports,
     pole: tuple[float, float, np.ndarray],
-) -> PoleStep | None:
-    """Return the PoleStep from supports k, c (direction,), or None if no such step is found.
+) -> FoundSupports | None:
+    """Return the nearest supports that give the main mode a pole, or None if there are none.
 
-    covariance: (2 direction, 2 direction) of (ln k, c); only its shape matters for the step.
+    found: that the step begins at; only the shape of its covariance matters for the step.
     pole: frequency in Hz, damping ratio, and their covariance (2, 2).
     """
+    k, c, covariance = found.k, found.c, found.covariance
     frequency, ratio, scatter = pole
     wanted = np.array([frequency, ratio])
     count, start = len(k), np.concatenate([np.log(k), c])
@@ -66,7 +50,7 @@ def step_to_pole(
         return None
     keep = np.eye(2 * count) - gain @ slope
     total = keep @ covariance @ keep.T + gain @ scatter @ gain.T
-    return PoleStep(np.exp(values[:count]), values[count:], total, gain[:, 0] * frequency)
+    return FoundSupports(np.exp(values[:count]), values[count:], total, gain[:, 0] * frequency)
 
 
 def _gain(slope: np.ndarray, covariance: np.ndarray) -> np.ndarray | None:

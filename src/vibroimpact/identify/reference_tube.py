@@ -3,8 +3,7 @@
 It is prepared once per process for one model and one set of spectra.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
@@ -12,7 +11,6 @@ import numpy as np
 from vibroimpact.identify.linear.family import FamilyResponse, LinearFamily, driven_modes
 from vibroimpact.identify.linear.modes import support_stiffness
 from vibroimpact.identify.linear.poles import first_pole, frequency_of, pole_of
-from vibroimpact.identify.spectra.window_leakage import spectral_kernel
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .broadband import FamilyMap, family_map
@@ -20,6 +18,7 @@ from .equivalent_support import equivalent_support, free_pole
 from .estimate import FREQUENCY_ERROR
 from .ods import GAIN_ERROR
 from .peak import resonance
+from .spectra_layout import SpectraLayout
 
 MAP_STIFFNESSES = 30
 SHAPES = 60
@@ -29,112 +28,26 @@ STABLE_FRACTION = 0.9  # of the negative damping that makes a mode unstable
 SMALL_K = 1.0  # N/m, at which derivatives without support are taken
 
 
-@dataclass(frozen=True)
-class Bins:
-    """The bins of a case's spectra.
-
-    spacing_Hz: distance of two bins.
-    highest: highest index of the sensors' spectra.
-    line_first, line_last: first and last index of the shape line's spectra.
-    window: name of the analysis window.
-    """
-
-    spacing_Hz: float
-    highest: int
-    line_first: int
-    line_last: int
-    window: str
-
-
-@dataclass(frozen=True)
-class Sensors:
-    """The sensors that the methods use.
-
-    names: of the channels of the spectra.
-    response, broadband: indices of the channels of these methods.
-    references: indices of the reference channels.
-    """
-
-    names: tuple
-    response: int
-    broadband: int
-    references: tuple
-
-
-def compared_bins(
-    frequency: np.ndarray, bins: Bins, force_band_Hz: Sequence[float], band_Hz: Sequence[float]
-) -> slice:
-    """Return the bins (of frequency in Hz) of a band that lie inside the band of the force."""
-    margin = 2.0 * bins.spacing_Hz  # the window smears the edges of the force's band
-    low = max(band_Hz[0], force_band_Hz[0] + margin)
-    high = min(band_Hz[1], force_band_Hz[1] - margin)
-    return slice(
-        int(np.searchsorted(frequency, low - 1e-9)), int(np.searchsorted(frequency, high + 1e-9))
-    )
-
-
-def seen_band_Hz(force_band_Hz: Sequence[float], bins: Bins) -> tuple[float, float]:
-    """Return the part of the band of the force in which the spectra have bins, Hz."""
-    low, high = force_band_Hz
-    return max(low, bins.spacing_Hz), min(high, bins.highest * bins.spacing_Hz)
-
-
-def on_grid(force_psd: np.ndarray | None, bins: Bins, grid: np.ndarray) -> np.ndarray | None:
-    """Return (point,) a relative PSD (frequency,) of the bins on a finer grid (point,) in Hz."""
-    if force_psd is None:
-        return None
-    return np.interp(grid, np.arange(force_psd.size) * bins.spacing_Hz, force_psd)
-
-
 class ReferenceTube:
     """Responses of the linear tube with any (k, c) at the sensors and along the shape line."""
 
-    def __init__(
-        self,
-        model: ModalModel,
-        bins: Bins,
-        sensors: Sensors,
-        force_band_Hz: Sequence[float],
-        broadband_Hz: Sequence[float],
-        stiffness_range: Sequence[float],
-        force_psd: np.ndarray | None = None,
-    ) -> None:
-        """Prepare the family of responses.
-
-        force_band_Hz: the band of the force.
-        broadband_Hz: band of the broadband method; it is cut to that of the force.
-        stiffness_range: N/m.
-        force_psd: (frequency,) relative PSD of the force on the bins; None for a white one.
-        """
-        self.model, self.bins, self.sensors = model, bins, sensors
-        self.stiffness_range = (stiffness_range[0], stiffness_range[1])
+    def __init__(self, model: ModalModel, layout: SpectraLayout) -> None:
+        """Prepare the family of responses."""
+        self.model, self.layout = model, layout
         self.modes = driven_modes(model)
-        self.kernel = spectral_kernel(bins.window, 1.0 / bins.spacing_Hz)
-        self.force_band_Hz = force_band_Hz
-        fine = self.kernel.oversampling
-        points = bins.highest * fine + self.kernel.half_width + 1
-        grid = np.arange(points) * (bins.spacing_Hz / fine)
-        self.family = LinearFamily(self.modes, grid, on_grid(force_psd, bins, grid))
-        self.frequency = np.arange(bins.highest + 1) * bins.spacing_Hz
-        columns = [model.sensor_names.index(name) for name in sensors.names]
-        self.at_sensors = self.family.response(model.sensor_shapes[:, columns])
-        self.at_line = self.family.response(
-            model.line_shapes, slice(bins.line_first * fine, bins.line_last * fine + 1, fine)
-        )
-        self.excited = (self.frequency >= force_band_Hz[0]) & (self.frequency <= force_band_Hz[1])
-        self.broadband = compared_bins(self.frequency, bins, force_band_Hz, broadband_Hz)
-
-    @property
-    def seen_band_Hz(self) -> tuple[float, float]:
-        """Return the band in Hz in which the force has power and the spectra have bins."""
-        return seen_band_Hz(self.force_band_Hz, self.bins)
+        self.family = LinearFamily(self.modes, layout.fine_frequency, layout.fine_force_psd)
+        self.at_sensors = self.family.response(layout.sensor_shapes(model))
+        fine = layout.kernel.oversampling
+        line = slice(layout.line_first * fine, layout.line_last * fine + 1, fine)
+        self.at_line = self.family.response(model.line_shapes, line)
 
     @cached_property
     def at_broadband(self) -> FamilyResponse:
         """Return the FamilyResponse of the broadband sensor on the fine grid of its band."""
-        index = self.kernel.fine_index(self.frequency[self.broadband])
-        response, own = self.at_sensors, slice(self.sensors.broadband, self.sensors.broadband + 1)
-        return type(response)(
+        layout, response = self.layout, self.at_sensors
+        index = layout.kernel.fine_index(layout.frequency[layout.broadband_bins])
+        own = slice(layout.broadband, layout.broadband + 1)
+        return FamilyResponse(
             response.frequency[index],
             response.free[:, own, index],
             response.residue[:, own, index],
@@ -144,9 +57,9 @@ class ReferenceTube:
     @cached_property
     def broadband_map(self) -> FamilyMap:
         """Return the FamilyMap of the broadband sensor."""
-        k = np.geomspace(self.stiffness_range[0], self.stiffness_range[1], MAP_STIFFNESSES)
+        k = np.geomspace(*self.layout.stiffness_range, MAP_STIFFNESSES)
         c = np.array([[self._map_damping(each, factor) for factor in MAP_DAMPING] for each in k])
-        return family_map(self.at_broadband, self.kernel, k, c)
+        return family_map(self.at_broadband, self.layout.kernel, k, c)
 
     def _map_damping(self, k: float, factor: float) -> float:
         """Return the c in N s/m that multiplies the first damping ratio by a factor, if stable."""
@@ -160,13 +73,13 @@ class ReferenceTube:
         ln k; frequency in Hz; damping ratio; its derivative by c in 1/(N s/m); and the c in N s/m
         at which a mode in the range of the spectra loses its damping.
         """
-        k = np.geomspace(SMALL_K, self.stiffness_range[1] * 10.0, 60)
+        k = np.geomspace(SMALL_K, self.layout.stiffness_range[1] * 10.0, 60)
         columns = []
         for stiffness in k:
             omega, shapes = self._block_modes(stiffness)
             moved = np.sum((self.modes.contact.T @ shapes) ** 2, axis=0)
             damped = self.modes.damping @ shapes**2
-            observed = omega < 2.0 * np.pi * self.frequency[-1]
+            observed = omega < 2.0 * np.pi * self.layout.frequency[-1]
             observed[0] = True  # a stiff support lifts even the first mode above the spectra
             least = -np.min(damped[observed] / moved[observed])
             frequency, ratio = 0.5 * omega[0] / np.pi, 0.5 * damped[0] / omega[0]
@@ -175,12 +88,15 @@ class ReferenceTube:
 
     def lowest_stable_damping(self, k: float) -> float:
         """Return the negative c in N s/m at which a mode in the spectra has almost no damping."""
-        table = self._first_modes
-        return STABLE_FRACTION * float(np.interp(np.log(max(k, SMALL_K)), table[0], table[4]))
+        return STABLE_FRACTION * self._interpolated(k, self._first_modes[4])
+
+    def _interpolated(self, k: float, column: np.ndarray) -> float:
+        """Return the value at k in N/m of a column of the table."""
+        return float(np.interp(np.log(max(k, SMALL_K)), self._first_modes[0], column))
 
     def first_frequency(self, k: float) -> float:
         """Return the first mode's frequency in Hz at c = 0."""
-        return float(np.interp(np.log(max(k, SMALL_K)), self._first_modes[0], self._first_modes[1]))
+        return self._interpolated(k, self._first_modes[1])
 
     def frequency_slope(self, k: float) -> float:
         """Return d ln(first frequency) / d ln(k) at c = 0.
@@ -191,10 +107,7 @@ class ReferenceTube:
         return self.damping_ratio_slope(k) * k / (2.0 * np.pi * self.first_frequency(k))
 
     def _block_modes(self, k: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return (omega (value,) rad/s ascending, vectors (mode, value)) of the driven block.
-
-        c = 0.
-        """
+        """Return (omega (value,) rad/s ascending, vectors (mode, value)) of the driven block."""
         block = self.modes.block
         contact = self.modes.contact[block]
         stiffness = support_stiffness(self.modes.omega[block], contact, k)
@@ -205,13 +118,11 @@ class ReferenceTube:
 
     def first_damping_ratio(self, k: float) -> float:
         """Return the first mode's damping ratio at c = 0."""
-        table = self._first_modes
-        return float(np.interp(np.log(max(k, SMALL_K)), table[0], table[2]))
+        return self._interpolated(k, self._first_modes[2])
 
     def damping_ratio_slope(self, k: float) -> float:
         """Return d(first damping ratio)/dc in 1/(N s/m) at c = 0."""
-        table = self._first_modes
-        return float(np.exp(np.interp(np.log(max(k, SMALL_K)), table[0], np.log(table[3]))))
+        return float(np.exp(self._interpolated(k, np.log(self._first_modes[3]))))
 
     def damping_for(self, k: float, damping_ratio: float) -> float:
         """Return the c in N s/m that gives the first mode a damping ratio, to first order in c."""
@@ -245,7 +156,7 @@ class ReferenceTube:
         pole alone. It is 1 if no support gives the pole.
         """
         support = equivalent_support(self.modes, frequency, damping_ratio)
-        own = slice(self.sensors.response, self.sensors.response + 1)
+        own = slice(self.layout.response, self.layout.response + 1)
 
         def factor(fine_index):
             if not np.isfinite(support.k):
@@ -272,10 +183,10 @@ class ReferenceTube:
         if c < self.lowest_stable_damping(support.k):
             c = self.lowest_stable_damping(support.k)
             pole = first_pole(self.model, support.k, c)
-        fine = self.kernel.oversampling
-        every_bin = slice(0, self.bins.highest * fine + 1, fine)
-        response = self.at_sensors.frf(support.k, c, every_bin) * self.excited
-        seen = response[:, None, list(self.sensors.references), :].conj()
+        layout = self.layout
+        response = self.at_sensors.frf(support.k, c, layout.fine_bins)
+        response = response * layout.excited(layout.frequency)
+        seen = response[:, None, list(layout.references), :].conj()
         return (response[:, :, None, :] * seen).sum(axis=0), pole
 
     @cached_property
@@ -288,7 +199,7 @@ class ReferenceTube:
     @cached_property
     def mode_shapes(self) -> tuple[np.ndarray, np.ndarray]:
         """Return (k (k,) N/m, the first mode's shapes (k, line_point) of unit length at c = 0)."""
-        k = np.geomspace(self.stiffness_range[0], self.stiffness_range[1], SHAPES)
+        k = np.geomspace(*self.layout.stiffness_range, SHAPES)
         shapes = np.array([self._first_line_shape(stiffness) for stiffness in k])
         return k, shapes / np.linalg.norm(shapes, axis=1, keepdims=True)
 

@@ -1,6 +1,6 @@
 """Stabilisation chart: poles that stay while the order of the estimator grows.
 
-The pole of the main peak is chosen from it.
+The pole of the main peak is chosen from it, or all poles of a band.
 """
 
 from collections.abc import Iterable, Sequence
@@ -21,6 +21,11 @@ LAST_ORDER = 6  # beyond it a stable pole of a broad peak is part of a split one
 # A pole with less than this times the damping of the chosen one is a second mode; one with more is
 # a smooth background.
 RIVAL_RATIO = 3.0
+# Of the poles of a whole band.
+HIGHEST_ORDER = 40
+CLUSTER_HZ = 0.012  # relative width in frequency of one pole's column
+FEWEST_ORDERS = 6  # orders in which a pole must be stable
+LARGEST_MODE_RATIO = 0.15  # a pole with more damping is background
 
 
 @dataclass(frozen=True)
@@ -152,3 +157,36 @@ def stable_column(chart: StabilisationChart, start: complex, radius_Hz: float) -
         run = [*run, last]
         longest = run if len(run) > len(longest) else longest
     return np.array(longest)
+
+
+def stable_poles(
+    frequency: np.ndarray, response: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, StabilisationChart]:
+    """Return (frequency (pole,) Hz ascending, damping ratio (pole,), chart) of a band.
+
+    They are medians over the orders in which each pole is stable.
+
+    frequency: (line,) Hz.
+    response: (output, line) complex, of one force; lines may be weighted by their noise.
+    """
+    equations = NormalEquations(frequency, response[:, None, :], HIGHEST_ORDER)
+    chart = stabilisation_chart(equations, 0.0, range(2, HIGHEST_ORDER + 1))
+    place, ratio = frequency_of(chart.pole)
+    usable = (
+        chart.stable
+        & (ratio > 0.0)
+        & (ratio < LARGEST_MODE_RATIO)
+        & (place > frequency[0])
+        & (place < frequency[-1])
+    )
+    place, ratio, order = place[usable], ratio[usable], chart.order[usable]
+    found = []
+    while place.size:
+        spread = np.abs(place[:, None] - place) < CLUSTER_HZ * place
+        near = spread[np.argmax(spread.sum(axis=1))]
+        if np.unique(order[near]).size < FEWEST_ORDERS:
+            break
+        found.append((float(np.median(place[near])), float(np.median(ratio[near]))))
+        place, ratio, order = place[~near], ratio[~near], order[~near]
+    medians = np.array(sorted(found)).reshape(-1, 2)
+    return medians[:, 0], medians[:, 1], chart

@@ -33,6 +33,22 @@ class Start:
 
 
 @dataclass(frozen=True)
+class FoundSupports:
+    """The stiffness and damping of each direction that a method found, and their errors.
+
+    k, c: (direction,) N/m and N s/m; c is NaN if the method does not give it.
+    covariance: (2 direction, 2 direction) of (ln k, c).
+    by_frequency: (2 direction,) change of (ln k, c) per relative error of the model's frequencies;
+        None if the covariance holds the model's error.
+    """
+
+    k: np.ndarray
+    c: np.ndarray
+    covariance: np.ndarray
+    by_frequency: np.ndarray | None = None
+
+
+@dataclass(frozen=True)
 class SupportValues:
     """The stiffness and damping of each direction, and how well a method knows them.
 

@@ -23,6 +23,7 @@ from vibroimpact.identify.spectra.window_leakage import SpectralKernel
 from .estimate import FREQUENCY_ERROR
 from .ods import GAIN_ERROR
 from .support_fit import (
+    FoundSupports,
     LowestDamping,
     Start,
     SupportSearch,
@@ -60,12 +61,12 @@ class ShapesFit:
     """The supports whose shapes fit best.
 
     values: SupportValues.
-    covariance: (2 direction, 2 direction) of (ln k, c).
+    found: FoundSupports without c. The error of the model is part of their covariance.
     mac: weighted mean of the MAC over blocks.
     """
 
     values: SupportValues
-    covariance: np.ndarray
+    found: FoundSupports
     mac: float
 
 
@@ -214,7 +215,8 @@ class ShapeComparison:
         covariance = inverse_information(values.jacobian) * excess
         across = np.sum(shapes.reshape(2, len(self.factor), -1) ** 2, axis=(0, 2))
         weight = self.factor**2
-        return ShapesFit(values, covariance, float(1.0 - across.sum() / weight.sum()))
+        found = FoundSupports(values.k, np.full(count, np.nan), covariance)
+        return ShapesFit(values, found, float(1.0 - across.sum() / weight.sum()))
 
 
 def _parts(values: np.ndarray) -> np.ndarray:

@@ -16,6 +16,7 @@ from vibroimpact.identify.spectra.window_leakage import SpectralKernel, correlat
 from .broadband import EXPONENT
 from .segment_scatter import widened
 from .support_fit import (
+    FoundSupports,
     LowestDamping,
     Start,
     SupportSearch,
@@ -29,16 +30,13 @@ class SpectraFit:
     """The supports whose spectra fit best.
 
     values: SupportValues.
-    covariance: (2 direction, 2 direction) of (ln k, c).
-    model_change: (2 direction,) change of (ln k, c) when all frequencies of the model are wrong by
-        the same relative error, per unit of it.
+    found: FoundSupports.
     correlation: smallest correlation coefficient over sensors.
     curve: (sensor, bin) fitted PSDs in the unit of the measured ones.
     """
 
     values: SupportValues
-    covariance: np.ndarray
-    model_change: np.ndarray
+    found: FoundSupports
     correlation: float
     curve: np.ndarray
 
@@ -91,6 +89,17 @@ class SpectraComparison:
         vector = psd**EXPONENT
         return vector / self.length, EXPONENT * vector / psd * slope / self.length
 
+    def coarse_cost(self, observed: Observed, k: np.ndarray, c: np.ndarray) -> float:
+        """Return the squared residual of k (direction,) in N/m and c (direction,) in N s/m.
+
+        observed: of the sensors on the bins of the spectra themselves.
+        """
+        response = self.structure.frf(observed, k, c)
+        psd = np.sum(response.real**2 + response.imag**2, axis=-1).T
+        vector = psd**EXPONENT / self.length
+        amplitude = np.sum(vector * self.target) / np.sum(vector**2)
+        return float(np.sum((self.target - amplitude * vector) ** 2))
+
     def fit(
         self,
         search: SupportSearch,
@@ -120,7 +129,8 @@ class SpectraComparison:
         model_change = inverse @ weighted @ stretch.ravel()
         lengths = np.linalg.norm(vector, axis=1)
         correlation = float(np.min(np.sum(vector * self.target, axis=1) / lengths))
-        return SpectraFit(values, covariance, model_change, correlation, curve)
+        found = FoundSupports(values.k, values.c, covariance, model_change)
+        return SpectraFit(values, found, correlation, curve)
 
 
 def _widened(covariance: np.ndarray, changes: np.ndarray, averages: float) -> np.ndarray:
@@ -135,19 +145,3 @@ def _widened(covariance: np.ndarray, changes: np.ndarray, averages: float) -> np
             result[index] *= factor
             result[:, index] *= factor
     return result
-
-
-class CoarseCost:
-    """The cost of supports on the bins of the spectra themselves."""
-
-    def __init__(self, comparison: SpectraComparison, observed: Observed) -> None:
-        self._comparison, self._observed = comparison, observed
-
-    def __call__(self, k: np.ndarray, c: np.ndarray) -> float:
-        """Return the squared residual of k (direction,) in N/m and c (direction,) in N s/m."""
-        comparison = self._comparison
-        response = comparison.structure.frf(self._observed, k, c)
-        psd = np.sum(response.real**2 + response.imag**2, axis=-1).T
-        vector = psd**EXPONENT / comparison.length
-        amplitude = np.sum(vector * comparison.target) / np.sum(vector**2)
-        return float(np.sum((comparison.target - amplitude * vector) ** 2))

@@ -14,7 +14,7 @@ from vibroimpact.campaign.importing.frf import FrequencyResponses
 from vibroimpact.campaign.signals import Transfer, campaign_signals, transfer_or_reason
 from vibroimpact.config.schema import Config
 from vibroimpact.diagnosis.measurement.attached_model import attach
-from vibroimpact.identify.stable_poles import stable_poles
+from vibroimpact.identify.stabilisation import stable_poles
 from vibroimpact.io.units import SI_OF_KIND, TIME_DERIVATIVES
 from vibroimpact.reduction.modal_model import ModalModel
 

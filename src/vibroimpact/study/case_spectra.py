@@ -30,6 +30,19 @@ from vibroimpact.identify.spectra.welch import (
 UNITS = {"displacement": "m2 Hz-1", "acceleration": "m2 s-4 Hz-1"}
 # No attribute `units`: UDUNITS has no fractional powers and reads "m Hz-1/2" as half a m s.
 ROOT_UNIT = "in m/sqrt(Hz)"
+COORDINATES = {
+    "sensor": {"long_name": "sensor: point and axis"},
+    "driven_sensor": {"long_name": "sensor in the direction of the force: point and axis"},
+    "frequency": {"units": "Hz", "long_name": "frequency"},
+    "low_frequency": {
+        "units": "Hz",
+        "long_name": "frequency of the segment spectra of the sensors",
+    },
+    "line_frequency": {
+        "units": "Hz",
+        "long_name": "frequency of the segment spectra along the shape line",
+    },
+}
 PARTS = {"re": "real part", "im": "imaginary part"}
 
 
@@ -78,30 +91,16 @@ class CaseSpectra:
         self._sensors = len(sensors)
         self._filled = self._segment = 0
         self._power: dict[str, np.ndarray] = {}
-        coords = {
-            name: (name, values, attributes)
-            for name, values, attributes in (
-                ("sensor", list(sensors), {"long_name": "sensor: point and axis"}),
-                (
-                    "driven_sensor",
-                    [sensors[index] for index in self._driven],
-                    {"long_name": "sensor in the direction of the force: point and axis"},
-                ),
-                ("frequency", frequency, _attributes("Hz", "frequency")),
-                (
-                    "low_frequency",
-                    frequency[: self._low],
-                    _attributes("Hz", "frequency of the segment spectra of the sensors"),
-                ),
-                (
-                    "line_frequency",
-                    line_frequency[self._band],
-                    _attributes("Hz", "frequency of the segment spectra along the shape line"),
-                ),
-            )
+        values = {
+            "sensor": list(sensors),
+            "driven_sensor": [sensors[index] for index in self._driven],
+            "frequency": frequency,
+            "low_frequency": frequency[: self._low],
+            "line_frequency": line_frequency[self._band],
         }
+        coords = {name: (name, own, COORDINATES[name]) for name, own in values.items()}
         averages = effective_averages(samples / rate, rate, spectra)
-        about_averages = _attributes("1", "degrees of freedom of a PSD bin")
+        about_averages = {"units": "1", "long_name": "degrees of freedom of a PSD bin"}
         self.head = xr.Dataset(
             {"effective_averages": ((), averages, about_averages)},
             coords,
@@ -192,12 +191,12 @@ def case_spectra(config: Any, record: xr.Dataset) -> xr.Dataset:
 
 def _declared_parts() -> dict[str, tuple]:
     """Return {name: (dimensions, type, attributes)} of the variables with a frequency axis."""
-    parts = {}
+    parts: dict[str, tuple] = {}
     for quantity, unit in UNITS.items():
         for name in ("mean", "min", "max"):
             text = f"{name} over segments of the one-sided power spectral density of {quantity}"
-            dims: tuple = ("sensor", "frequency")
-            parts[f"psd_{quantity}_{name}"] = (dims, "f4", _attributes(unit, text))
+            about = {"units": unit, "long_name": text}
+            parts[f"psd_{quantity}_{name}"] = (("sensor", "frequency"), "f4", about)
     for name, dims in (
         ("sensor_spectra", ("driven_sensor", "segment", "low_frequency")),
         ("line_spectra", ("line_point", "segment", "line_frequency")),
@@ -210,7 +209,3 @@ def _declared_parts() -> dict[str, tuple]:
 
 def _no_callback(name: str, index: Any, values: np.ndarray) -> None:
     raise ValueError("set the attribute `write` before the first sample")
-
-
-def _attributes(unit: str, long_name: str) -> dict[str, str]:
-    return {"units": unit, "long_name": long_name}

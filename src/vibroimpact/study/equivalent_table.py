@@ -15,26 +15,10 @@ from .method_agreement import COMPARED, Span, compared_spans, verdict
 from .reasons import NOT_MOVED, damping_reason, stiffness_reason
 
 EQUIVALENT_COLUMNS = (
-    "gap_m",
-    "load_rms_N",
-    "load_over_gap",
-    "group",
-    "direction",
-    "k_N_per_m",
-    "k_low",
-    "k_high",
-    "c_N_s_per_m",
-    "c_low",
-    "c_high",
-    "secant_k_N_per_m",
-    "secant_c_N_s_per_m",
-    "agreement_k",
-    "agreement_c",
-    "reason_k",
-    "reason_c",
-    "flag",
-    "k_bound",
-    "contact_fraction",
+    *("gap_m", "load_rms_N", "load_over_gap", "group", "direction"),
+    *("k_N_per_m", "k_low", "k_high", "c_N_s_per_m", "c_low", "c_high"),
+    *("secant_k_N_per_m", "secant_c_N_s_per_m", "agreement_k", "agreement_c"),
+    *("reason_k", "reason_c", "flag", "k_bound", "contact_fraction"),
 )
 # Of every table that answers: answer_digest of the configuration that it is of.
 DIGEST_COLUMN = "config_digest"

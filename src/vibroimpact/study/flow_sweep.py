@@ -197,12 +197,13 @@ def _runs(
 
         result, grown = _bounded(integrate, _laws(tube, batch))
         for lane, (velocity, coupled) in enumerate(batch):
-            own_case = replace(case, load_rms_N=forces[velocity][1])
+            force_rms = forces[velocity][1]
+            own_case = replace(case, load_rms_N=force_rms)
             record = record_dataset(config, model, schedule, result, lane, own_case)
             rms = np.inf if lane in grown else line.rms(lane)
-            found = _run(case, (velocity, start), record, rms)
-            force_rms = own_case.load_rms_N
-            yield replace(found, force_rms_N=force_rms, coupled=coupled), record
+            place = case.load_rms_N, case.gap_m, velocity, start, case.seed
+            tallies = _tallies(record, bool(np.isfinite(rms)))
+            yield FlowRun(*place, rms, *tallies, force_rms, coupled), record
 
 
 def _lanes(config: Config) -> list[tuple[float, bool]]:
@@ -270,17 +271,12 @@ def _push(model: Any, amplitude: float) -> np.ndarray:
     return rates
 
 
-def _run(case: Case, at: tuple[float, str], record: xr.Dataset, rms: float) -> FlowRun:
-    """Return the FlowRun of a record; at: (velocity, start)."""
-    bounded = np.isfinite(rms)
-    return FlowRun(
-        *(case.load_rms_N, case.gap_m, *at, case.seed, rms),
-        float(record["contact_fraction"].max()) if bounded else np.nan,
-        float(record["wear_work_rate"].sum()) if bounded else np.nan,
-        float(record["fluid_power"]) if bounded else np.nan,
-        case.load_rms_N,
-        False,
-    )
+def _tallies(record: xr.Dataset, bounded: bool) -> tuple[float, float, float]:
+    """Return (contact fraction, wear work rate in W, power of the flow in W); NaN if unbounded."""
+    if not bounded:
+        return np.nan, np.nan, np.nan
+    contact = float(record["contact_fraction"].max())
+    return contact, float(record["wear_work_rate"].sum()), float(record["fluid_power"])
 
 
 def _equivalents(

@@ -104,12 +104,7 @@ def identify_support(
     Raises ValueError for a configuration without identification, and for a record without time
     series if the spectra are not given.
     """
-    config = config_of(config)
-    if config.identification is None:
-        raise ValueError(
-            f"study '{config.study}' has no section identification, which gives the bands for"
-            " the equivalent support: add it; `vibroimpact reference` lists its keys"
-        )
+    config = _identified(config)
     from vibroimpact.identify.identify_case import identify_case
 
     if spectra is None:
@@ -130,18 +125,26 @@ def run_study(config: Config | str | Path) -> xr.Dataset:
     config: a Config, or the path of a file.
     Raises ValueError for a configuration without identification, and as simulate_case does.
     """
-    config = config_of(config)
-    model, tables = reduced_model(config), []
-    cases = all_cases(config.grid)
-    if config.identification is None:
-        raise ValueError(f"study '{config.study}' has no section identification: add it")
+    config = _identified(config)
     from vibroimpact.identify.identify_case import identify_case
 
-    for _, record in simulate_cases(config, model, cases):
+    model, tables = reduced_model(config), []
+    for _, record in simulate_cases(config, model, all_cases(config.grid)):
         estimates, _ = identify_case(config, model, record, case_spectra(config, record))
         tables.append(table_rows(estimates, record.attrs))
     rows = consistency_rows(tables)
     return consistency_dataset(rows, summary_rows(rows))
+
+
+def _identified(config: Config | str | Path) -> Config:
+    """Return a Config with a section identification. Raises ValueError, ConfigError."""
+    config = config_of(config)
+    if config.identification is None:
+        raise ValueError(
+            f"study '{config.study}' has no section identification, which gives the bands for"
+            " the equivalent support: add it; `vibroimpact reference` lists its keys"
+        )
+    return config
 
 
 def reduced_model(config: Config) -> ModalModel:

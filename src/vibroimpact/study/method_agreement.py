@@ -25,38 +25,11 @@ AGREEMENT = 0.25
 # overlap; differ: with disjoint ones, so that there is no recommended value.
 VERDICTS = ("agree", "partial", "spread", "differ", "unresolved")
 WEAK = "weak: "  # how the reason of a value begins that is resolved, but weakly
+FEWEST_GAPS = 2  # with values at one load over gap, to say whether they collapse
 Span = tuple[float, float, float]  # median, smallest, largest; NaN if not resolved
-SUMMARY_COLUMNS = (
-    "gap_m",
-    "load_rms_N",
-    "load_over_gap",
-    "group",
-    "direction",
-    "method",
-    "k_median",
-    "k_low",
-    "k_high",
-    "c_median",
-    "c_low",
-    "c_high",
-    "ratio",
-    "verdict_k",
-    "verdict_c",
-    "reason",
-    "flag",
-    "k_bound",
-    "contact_fraction",
-    "caution",
-)
 COLLAPSE_COLUMNS = (
-    "group",
-    "direction",
-    "method",
-    "load_over_gap",
-    "k_smallest",
-    "k_largest",
-    "gaps",
-    "k_ratio",
+    *("group", "direction", "method"),
+    *("load_over_gap", "k_smallest", "k_largest", "gaps", "k_ratio"),
 )
 
 
@@ -93,7 +66,7 @@ def summary_rows(rows: list[dict]) -> list[dict]:
     """
     places = _by_place(rows)
     several = len({place[2:] for place in places}) > 1
-    summary = []
+    summary: list[dict] = []
     for place, methods in places.items():
         found = {name: _method_row(place, name, cases) for name, cases in methods.items()}
         stiffness, damping = (compared_spans(found, quantity, several) for quantity in "kc")
@@ -102,9 +75,11 @@ def summary_rows(rows: list[dict]) -> list[dict]:
         centre = float(np.median(medians)) if whole else np.nan
         for name, row in found.items():
             row["ratio"] = row["k_median"] / centre
-            row["verdict_k"] = verdict(stiffness, "k") if name in COMPARED else ""
-            row["verdict_c"] = verdict(damping, "c") if name in COMPARED_DAMPING else ""
-            summary.append({column: row[column] for column in SUMMARY_COLUMNS})
+            if name in COMPARED:
+                row["verdict_k"] = verdict(stiffness, "k")
+            if name in COMPARED_DAMPING:
+                row["verdict_c"] = verdict(damping, "c")
+        summary += found.values()
     return summary
 
 
@@ -122,6 +97,9 @@ def _method_row(place: tuple, method: str, cases: list[dict]) -> dict:
         "method": method,
         **dict(zip(("k_median", "k_low", "k_high"), k, strict=True)),
         **dict(zip(("c_median", "c_low", "c_high"), c, strict=True)),
+        "ratio": np.nan,  # this and the verdicts are set by the methods together
+        "verdict_k": "",
+        "verdict_c": "",
         "reason": _reason(cases, {"k": k, "c": c}),
         "flag": counted([str(row["flag"]) for row in cases]),
         "k_bound": _bound(cases, k),
@@ -237,12 +215,12 @@ def counted(texts: Sequence[str]) -> str:
     return f"{len(there)} of {len(texts)} seeds: {there[0]}" if there else ""
 
 
-def collapse_rows(summary: list[dict], points_per_gap: int = 2) -> list[dict]:
+def collapse_rows(summary: list[dict]) -> list[dict]:
     """Return rows on the collapse of the curves k(load / gap) of the gaps onto one curve.
 
     A structure with impacts is homogeneous of degree one, so that k depends on load / gap alone.
     k_median of each gap is interpolated, linearly in both logarithms and within its own range, at
-    the load / gap of all gaps. Rows are those with values of at least points_per_gap gaps, with the
+    the load / gap of all gaps. Rows are those with values of at least FEWEST_GAPS gaps, with the
     columns COLLAPSE_COLUMNS: k and load_over_gap in N/m.
     """
     curves: dict[tuple, dict[float, list[tuple[float, float]]]] = {}
@@ -252,12 +230,10 @@ def collapse_rows(summary: list[dict], points_per_gap: int = 2) -> list[dict]:
             points = curves.setdefault(place, {}).setdefault(row["gap_m"], [])
             points.append((row["load_over_gap"], row["k_median"]))
     order = sorted(curves, key=lambda place: METHODS.index(place[2]))
-    return [row for place in order for row in _collapse_of(place, curves[place], points_per_gap)]
+    return [row for place in order for row in _collapse_of(place, curves[place])]
 
 
-def _collapse_of(
-    place: tuple, curves: dict[float, list[tuple[float, float]]], points_per_gap: int
-) -> list[dict]:
+def _collapse_of(place: tuple, curves: dict[float, list[tuple[float, float]]]) -> list[dict]:
     """Return the rows of one group, direction and method."""
     rows = []
     logs = {gap: np.log(np.array(sorted(points))).T for gap, points in curves.items()}
@@ -267,7 +243,7 @@ def _collapse_of(
             for log in logs.values()
             if log[0][0] - 1e-9 <= level <= log[0][-1] + 1e-9
         ]
-        if len(values) >= points_per_gap:
+        if len(values) >= FEWEST_GAPS:
             low, high = float(np.exp(min(values))), float(np.exp(max(values)))
             found = (*place, float(np.exp(level)), low, high, len(values), high / low)
             rows.append(dict(zip(COLLAPSE_COLUMNS, found, strict=True)))

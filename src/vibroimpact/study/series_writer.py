@@ -18,7 +18,7 @@ from vibroimpact.io.records import RecordFile, write_record
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .cases import Case
-from .record_variables import VARIABLES, coordinate, split_record
+from .record_variables import VARIABLES, describe, split_record
 from .simulation import case_attributes, sample_times
 
 PIECE = 8192  # samples written at a time: many small writes cost more than the samples
@@ -39,29 +39,23 @@ def series_writer(config: Any, model: ModalModel, paths: dict, attributes: dict)
             yield lambda first, series: None
             return
         coordinates = {
-            name: coordinate(name, values)
-            for name, values in (
-                ("time", sample_times(schedule)),
-                ("sensor", list(model.sensor_names)),
-                ("line_arc_length", model.line_arc_length),
-                ("support", list(model.support_names)),
-            )
+            "time": sample_times(schedule),
+            "sensor": list(model.sensor_names),
+            "line_arc_length": model.line_arc_length,
+            "support": list(model.support_names),
         }
-        parts = {
-            name: (dims, dtype, {"units": unit, "long_name": long_name})
-            for name, (dims, dtype, unit, long_name) in VARIABLES.items()
-            if name in SERIES
-        }
+        head = describe({}, coordinates, {})
+        parts = {}
+        for name in SERIES:
+            dims, dtype, units, long_name = VARIABLES[name]
+            parts[name] = (dims, dtype, {"units": units, "long_name": long_name})
         waiting: list[dict[str, np.ndarray]] = []
         with ExitStack() as open_files:
-            heads = [
-                xr.Dataset({}, coordinates, case_attributes(config, schedule, case) | attributes)
-                for case in batch
-            ]
-            files = [
-                open_files.enter_context(RecordFile(paths[case], head, parts, {"direction": 2}))
-                for case, head in zip(batch, heads, strict=True)
-            ]
+            files = []
+            for case in batch:
+                own = head.assign_attrs(case_attributes(config, schedule, case) | attributes)
+                file = RecordFile(paths[case], own, parts, {"direction": 2})
+                files.append(open_files.enter_context(file))
 
             def put(first: int, series: dict[str, np.ndarray]) -> None:
                 waiting.append({name: values.copy() for name, values in series.items()})

@@ -66,27 +66,16 @@ def _rows(rule: str, jobs: list[dict], total: float) -> Iterator[dict]:
     for job in jobs:
         for name, seconds in job["parts"].items():
             parts[name] = parts.get(name, 0.0) + seconds
-    wall = round(sum(job["wall_s"] for job in jobs), 2)
     cpu = sum(job["cpu_s"] for job in jobs)
-    most = max((job["max_rss_MB"] for job in jobs), default=0.0)
-    yield {
-        "rule": rule,
-        "part": "",
-        "jobs": len(jobs),
-        "wall_s": wall,
-        "cpu_s": round(cpu, 3),
-        "share": round(cpu / total, 4),
-        "max_rss_MB": most,
-    }
-    for name, seconds in parts.items():
+    for name, seconds in {"": cpu, **parts}.items():
         yield {
             "rule": rule,
             "part": name,
             "jobs": len(jobs),
-            "wall_s": wall,
+            "wall_s": round(sum(job["wall_s"] for job in jobs), 2),
             "cpu_s": round(seconds, 3),
             "share": round(seconds / total, 4),
-            "max_rss_MB": most,
+            "max_rss_MB": max((job["max_rss_MB"] for job in jobs), default=0.0),
         }
 
 

@@ -12,10 +12,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..export_formats.frames import plain_name
+from ..export_formats.frames import numbers, plain_name
 from ..export_formats.unit_system import UnitSystem
 from .points import ContactPoint, ContactSet
 
+DIGITS = ".9E"
 REACH = 1.0  # m of penetration, up to which the force is given; Abaqus holds it beyond
 USE = (
     "Each node of SUPPORT_POINTS is a point of the tube: tie it to your model, or replace its"
@@ -33,7 +34,7 @@ def text(contacts: ContactSet, unit: UnitSystem, first_number: int) -> str:
     for name, start in (("POINTS", first_number), ("GROUND", first_number + count)):
         lines.append(f"*NODE, NSET=SUPPORT_{name}")
         for number, point in enumerate(contacts.points, start):
-            lines.append(f"{number}, {_row(unit.length * point.position)}")
+            lines.append(f"{number}, {numbers(unit.length * point.position, DIGITS)}")
     lines += ["*BOUNDARY", "SUPPORT_GROUND, 1, 6"]
     element = first_number
     for number, point in enumerate(contacts.points, first_number):
@@ -66,23 +67,18 @@ def _elasticity(point: ContactPoint, unit: UnitSystem, gap: float) -> list[tuple
     return [*start, (0.0, unit.length * gap), reach]
 
 
-def _lines(connector: Connector, numbers: tuple[int, int, int]) -> list[str]:
-    """Return the lines of a connector. numbers: of the element, its ground node and the tube's."""
+def _lines(connector: Connector, tags: tuple[int, int, int]) -> list[str]:
+    """Return the lines of a connector. tags: of the element, its ground node and the tube's."""
     name, kind, axes, table = connector
     return [
         f"*ORIENTATION, NAME=AXES_{name}",
-        _row(axes.ravel()),
+        numbers(axes.ravel(), DIGITS),
         f"*ELEMENT, TYPE=CONN3D2, ELSET=CONTACT_{name}",
-        ", ".join(map(str, numbers)),
+        ", ".join(map(str, tags)),
         f"*CONNECTOR SECTION, ELSET=CONTACT_{name}, BEHAVIOR=LAW_{name}",
         f"{kind},",
         f"AXES_{name},",
         f"*CONNECTOR BEHAVIOR, NAME=LAW_{name}",
         "*CONNECTOR ELASTICITY, COMPONENT=1, NONLINEAR",
-        *(_row(np.array(row)) for row in table),
+        *(numbers(row, DIGITS) for row in table),
     ]
-
-
-def _row(values: np.ndarray) -> str:
-    """Return numbers as a data line."""
-    return ", ".join(f"{value + 0.0:.9E}" for value in values)

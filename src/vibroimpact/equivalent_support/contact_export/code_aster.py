@@ -9,19 +9,20 @@ and its test sdnd100a.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 
 from vibroimpact.config.profiles import Lobes
 from vibroimpact.structure.contact.outline import radial_gap
 
-from ..export_formats.frames import plain_name
+from ..export_formats.frames import numbers, plain_name
 from ..export_formats.unit_system import UnitSystem
 from .points import ContactPoint, ContactSet
 
 FAR = 1.0  # m, half the distance of the two planes of a land
 OUTLINE_DEG = np.linspace(0.0, 360.0, 361)
+DIGITS = ".12g"
 USE = (
     "Each GROUP_NO_1 is the node of your mesh at its contact point. Give CONTACTS to"
     " DYNA_VIBRA(BASE_CALCUL='GENE', TYPE_CALCUL='TRAN', COMPORTEMENT=CONTACTS, ...)."
@@ -65,10 +66,11 @@ def _obstacles(point: ContactPoint) -> Iterator[Obstacle]:
 def _term(point: ContactPoint, unit: UnitSystem, obstacle: Obstacle) -> list[str]:
     """Return the lines of one obstacle in COMPORTEMENT."""
     name, origin, gap, third = obstacle
+    roll = f"{roll_deg(point.axis, third):.9g}"
     lines = [
         f"    _F(RELATION='DIS_CHOC', GROUP_NO_1='{plain_name(point.name).upper()}',",
-        f"       OBSTACLE={name}, ORIG_OBST={_tuple(unit.length * origin)},",
-        f"       NORM_OBST={_tuple(point.axis)}, ANGL_VRIL={roll_deg(point.axis, third):.9g},",
+        f"       OBSTACLE={name}, ORIG_OBST=({numbers(unit.length * origin, DIGITS)}),",
+        f"       NORM_OBST=({numbers(point.axis, DIGITS)}), ANGL_VRIL={roll},",
         f"       JEU={unit.length * gap:.12g}, RIGI_NOR={unit.stiffness * point.stiffness:.9g},",
     ]
     if point.damping:
@@ -105,8 +107,3 @@ def _outline(point: ContactPoint, unit: UnitSystem) -> Iterator[str]:
     radii = unit.length * radial_gap(profile, point.gap, np.radians(OUTLINE_DEG))
     for degrees, radius in zip(OUTLINE_DEG, radii, strict=True):
         yield f"    {degrees:.9g}, {radius:.9g},"
-
-
-def _tuple(values: Iterable[float]) -> str:
-    """Return a tuple of Python."""
-    return f"({', '.join(f'{value + 0.0:.12g}' for value in values)})"

@@ -9,15 +9,14 @@ node. Source: OpenSees documentation, and CoupledZeroLength.cpp.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 
 from ..answer import EquivalentError
-from ..export_formats.frames import global_axes, plain_name
+from ..export_formats.frames import global_axes, numbers, plain_name
 from ..export_formats.unit_system import UnitSystem
 from .points import ContactPoint, ContactSet
 
+DIGITS = ".9e"
 USE = (
     "Call add_contacts(ops, nodes) after your nodes: nodes = {point: tag of your node at its"
     " place}. In a transient analysis, iterate (algorithm Newton)."
@@ -65,7 +64,8 @@ def text(contacts: ContactSet, unit: UnitSystem, first_number: int) -> str:
         "POINTS = {",
     ]
     for point in contacts.points:
-        values = f"{_tuple(unit.length * point.position)}, {unit.stiffness * point.stiffness:.9e}"
+        place = numbers(unit.length * point.position, DIGITS)
+        values = f"({place}), {unit.stiffness * point.stiffness:{DIGITS}}"
         lands = ", ".join(_land(point, number, unit) for number in range(len(point.lands)))
         lines.append(
             f'    "{plain_name(point.name)}": ({values}, {_hole(point, unit)}, [{lands}]),'
@@ -92,9 +92,4 @@ def _land(point: ContactPoint, number: int, unit: UnitSystem) -> str:
     normal = point.lands[number]
     across = np.cross(point.axis, normal)
     gap = unit.length * point.land_gaps[number]
-    return f"({gap:.9e}, {_tuple(normal)}, {_tuple(across)})"
-
-
-def _tuple(values: Iterable[float]) -> str:
-    """Return a tuple of Python."""
-    return f"({', '.join(f'{value + 0.0:.9e}' for value in values)})"
+    return f"({gap:.9e}, ({numbers(normal, DIGITS)}), ({numbers(across, DIGITS)}))"

@@ -8,7 +8,7 @@ it has no DASHPOT1.
 from __future__ import annotations
 
 from ..springs import PointSpring, SpringSet
-from .frames import global_axes, head, plain_name
+from .frames import global_axes, head, numbers, plain_name
 from .unit_system import UnitSystem
 
 USE = (
@@ -21,8 +21,7 @@ def text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
     """Return the keywords. Nodes and elements count from first_number."""
     lines = [*head(springs, unit, "**", USE), "*NODE, NSET=SUPPORT_POINTS"]
     for number, spring in enumerate(springs.springs, first_number):
-        place = ", ".join(f"{unit.length * value + 0.0:.9E}" for value in spring.position)
-        lines.append(f"{number}, {place}")
+        lines.append(f"{number}, {numbers(unit.length * spring.position, '.9E')}")
     element = first_number
     for number, spring in enumerate(springs.springs, first_number):
         lines.append(f"** {spring.name}")
@@ -38,8 +37,7 @@ def _elements(spring: PointSpring, unit: UnitSystem, node: int, element: int) ->
     oriented = ""
     if axes is None:
         axes, oriented = (0, 1), f", ORIENTATION=AXES_{name}"
-        frame = ", ".join(f"{value + 0.0:.9E}" for value in spring.axes.ravel())
-        lines += [f"*ORIENTATION, NAME=AXES_{name}", frame]
+        lines += [f"*ORIENTATION, NAME=AXES_{name}", numbers(spring.axes.ravel(), ".9E")]
     for kind, letter, values, factor in (
         ("SPRING", "K", spring.k, unit.stiffness),
         ("DASHPOT", "C", spring.c, unit.damping),

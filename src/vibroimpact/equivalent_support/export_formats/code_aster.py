@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from ..answer import EquivalentError
 from ..springs import PointSpring, SpringSet
-from .frames import global_axes, head, plain_name
+from .frames import global_axes, head, numbers, plain_name
 from .unit_system import UnitSystem
 
 LONGEST_NAME = 24
@@ -33,11 +33,10 @@ def text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
                 f"'{name}' has more than the {LONGEST_NAME} characters of a group of code_aster:"
                 " shorten the support's name"
             )
-        place = ", ".join(f"{unit.length * value + 0.0:.9g}" for value in spring.position)
-        places.append(f"#   {name}: ({place})")
+        places.append(f"#   {name}: ({numbers(unit.length * spring.position, '.9g')})")
         discrete += _terms(spring, unit, name)
         if global_axes(spring.axes) is None:
-            values = ", ".join(f"{value + 0.0:.12g}" for value in spring.axes.ravel())
+            values = numbers(spring.axes.ravel(), ".12g")
             orientation.append(f"        _F(GROUP_MA='{name}', CARA='VECT_X_Y', VALE=({values})),")
     lines = [*head(springs, unit, "#", USE), *places, "SUPPORTS = AFFE_CARA_ELEM("]
     lines += ["    MODELE=MODELE,", "    DISCRET=(", *discrete, "    ),"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -44,6 +45,11 @@ def global_axes(directions: np.ndarray) -> tuple[int, int] | None:
     first, second = (int(np.argmax(axis)) for axis in axes)
     along = axes[0, first] > 1.0 - AXIS_TOLERANCE and axes[1, second] > 1.0 - AXIS_TOLERANCE
     return (first, second) if along else None
+
+
+def numbers(values: Iterable[float], form: str) -> str:
+    """Return numbers in one format, separated by commas; without a minus before 0."""
+    return ", ".join(f"{value + 0.0:{form}}" for value in values)
 
 
 def plain_name(text: str) -> str:

@@ -13,16 +13,8 @@ from ..springs import SpringSet
 from .unit_system import UnitSystem
 
 COLUMNS = (
-    "point",
-    "support",
-    "x",
-    "y",
-    "z",
-    "direction_x",
-    "direction_y",
-    "direction_z",
-    "k",
-    "c",
+    *("point", "support", "x", "y", "z"),
+    *("direction_x", "direction_y", "direction_z", "k", "c"),
 )
 
 

@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.campaign.file import CampaignError, read_campaign
-from vibroimpact.campaign.signals import CampaignSignals, campaign_signals
+from vibroimpact.campaign.signals import campaign_signals
 from vibroimpact.config.reading import load_config
 from vibroimpact.config.schema import Config
 from vibroimpact.config.stage_settings import ConfigPart
@@ -30,9 +30,9 @@ from vibroimpact.study.method_agreement import consistency_rows, summary_rows
 
 from .forces import KnownForce
 from .levels import SAME_LOAD, SAME_RESPONSE, cases_of_records, gaps_of_records
-from .sensors import measured_model
+from .sensors import MeasuredTube, measured_tube
 from .settings import measured_settings, with_grid
-from .spectra import displacements, first_sample, measured_spectra
+from .spectra import displacements, measured_spectra
 from .usable import identification_problems, signal_problems
 
 Rows = list[dict[str, Any]]
@@ -96,25 +96,23 @@ def equivalent_of(
     signals = campaign_signals(campaign)
     _require(signal_problems(signals, config.spectra.segment_s))
     try:
-        linear, force, used = measured_model(config, campaign, signals)
+        tube = measured_tube(config, campaign, signals)
     except ValueError as error:  # off the tube, or no support is reached
         raise CampaignError(str(error)) from error
-    settings = measured_settings(config, signals, linear, force, used)
-    level, name = _levels(settings, signals, linear, used)
+    settings = measured_settings(config, tube)
+    level, name = _levels(settings, tube)
     gaps = gaps_of_records(signals.gap, config.grid.gap_m)
     cases = cases_of_records(level, gaps, SAME_LOAD if name == LOAD else SAME_RESPONSE)
     settings = with_grid(settings, cases)
-    found = {
-        case: measured_spectra(settings, signals, linear, force, used, (record, case))
-        for record, case in enumerate(cases)
+    spectra = {
+        case: measured_spectra(settings, tube, record, case) for record, case in enumerate(cases)
     }
-    return _identified(settings, linear, force, found, name, _notes(config, signals, force, used))
+    return _identified(settings, tube, spectra, name, _notes(config, tube))
 
 
 def _identified(
     config: ConfigPart,
-    model: ModalModel,
-    force: KnownForce,
+    tube: MeasuredTube,
     spectra: Mapping[Case, xr.Dataset],
     levels: str,
     notes: tuple[str, ...],
@@ -122,15 +120,15 @@ def _identified(
     """Return the MeasuredSupports of the spectra of all records."""
     tables, curves = [], {}
     for case, dataset in spectra.items():
-        estimates, curves[case] = identify_case(config, model, None, dataset)
+        estimates, curves[case] = identify_case(config, tube.model, None, dataset)
         tables.append(table_rows(estimates, dataset.attrs))
     rows = consistency_rows(tables)
     summary = summary_rows(rows)
-    unreached = unreached_supports(model, config.identification.groups)
+    unreached = unreached_supports(tube.model, config.identification.groups)
     return MeasuredSupports(
         config=config,
-        model=model,
-        force=force,
+        model=tube.model,
+        force=tube.force,
         records={case: str(dataset.attrs["record"]) for case, dataset in spectra.items()},
         spectra=spectra,
         curves=curves,
@@ -149,26 +147,19 @@ def _require(problems: Iterable[str]) -> None:
         raise CampaignError("\n".join(found))
 
 
-def _levels(
-    config: ConfigPart, signals: CampaignSignals, model: ModalModel, used: np.ndarray
-) -> tuple[np.ndarray, str]:
+def _levels(config: ConfigPart, tube: MeasuredTube) -> tuple[np.ndarray, str]:
     """Return (level (record,), name of the column): loads, or the motion of the response point."""
+    signals = tube.signals
     if np.isfinite(signals.load_rms).all() and (signals.load_rms > 0.0).all():
         return signals.load_rms, LOAD
-    points = [name.rpartition(".")[0] for name in model.sensor_names]
-    row = points.index(config.identification.response_point)
-    first = first_sample(signals, model)
-    moved = [
-        displacements(config, signals, record, used, first)[row]
-        for record in range(len(signals.records))
-    ]
+    row = tube.points.index(config.identification.response_point)
+    moved = [displacements(config, tube, record)[row] for record in range(len(signals.records))]
     return np.array([np.sqrt(np.mean(series**2)) for series in moved]), RESPONSE
 
 
-def _notes(
-    config: Config, signals: CampaignSignals, force: KnownForce, used: np.ndarray
-) -> tuple[str, ...]:
+def _notes(config: Config, tube: MeasuredTube) -> tuple[str, ...]:
     """Return the assumptions in sentences."""
+    signals, force = tube.signals, tube.force
     notes = []
     if not force.known:
         notes.append(
@@ -182,7 +173,7 @@ def _notes(
             f"The {len(signals.forces)} forces act together, with the covariance that they have"
             " over their band."
         )
-    left = [name for index, name in enumerate(signals.channels) if index not in set(used)]
+    left = [name for index, name in enumerate(signals.channels) if index not in tube.channels]
     if left:
         notes.append(f"Not used, because the force does not move them: {', '.join(left)}.")
     if not np.isfinite(signals.gap).all():

@@ -1,6 +1,6 @@
 """The linear model as the sensors of a campaign see it: they are its sensors and its shape line."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -21,6 +21,27 @@ from .forces import KnownForce, known_force
 LEAST_MOTION = 0.02  # of the sensor that the force moves most
 
 
+@dataclass(frozen=True, eq=False)
+class MeasuredTube:
+    """A linear tube as the sensors of a campaign see it.
+
+    signals: of the campaign.
+    model: its sensors are those of the campaign, from one end of the tube to the other. They are
+        also the points of the shape line.
+    force: KnownForce.
+    channels: (sensor,) indices of their channels.
+    points: (sensor,) names of their points, those of the channels without the axis at the end.
+    direction: (3,) of the first force, or of the model's excitation.
+    """
+
+    signals: CampaignSignals
+    model: ModalModel
+    force: KnownForce
+    channels: np.ndarray
+    points: tuple[str, ...]
+    direction: tuple[float, ...]
+
+
 def with_own_drive(
     config: ConfigPart, campaign: xr.Dataset, signals: CampaignSignals
 ) -> tuple[ModalModel, np.ndarray]:
@@ -37,57 +58,45 @@ def with_own_drive(
     return model, build_model(own, motion_only=True).drive_shapes
 
 
-def measured_model(
-    config: ConfigPart, campaign: xr.Dataset, signals: CampaignSignals
-) -> tuple[ModalModel, KnownForce, np.ndarray]:
-    """Return (ModalModel, KnownForce, indices (sensor,) of the channels that are its sensors).
+def groups_of(config: ConfigPart) -> str | tuple[tuple[str, ...], ...]:
+    """Return identification.groups of a configuration, `all` if it has no identification."""
+    return "all" if config.identification is None else config.identification.groups
 
-    The sensors are those channels that measure a motion which the force causes, from one end of
-    the tube to the other. They are also the points of the shape line.
+
+def measured_tube(
+    config: ConfigPart, campaign: xr.Dataset, signals: CampaignSignals
+) -> MeasuredTube:
+    """Return the MeasuredTube of a campaign.
+
+    Its sensors are those channels that measure a motion which the force causes.
 
     Raises CampaignError if there is none.
     """
     model, own_drive = with_own_drive(config, campaign, signals)
     force = known_force(config, signals, model, own_drive)
     model = replace(model, drive_shapes=force.drive_shapes)
-    centreline = build_centreline(config.structure)
     _, modes = reached_supports(model, groups_of(config))
     size = np.abs(model.sensor_shapes[modes]).max(axis=0) * moving(signals.kinds)
     used = np.flatnonzero(size > LEAST_MOTION * size.max(initial=0.0))
     if not used.size:
         raise CampaignError("no channel measures a motion of the tube that the force causes")
+    centreline = build_centreline(config.structure)
     places = np.array([centreline.locate(signals.points[each], "a channel") for each in used])
     order = np.argsort(places, kind="stable")
     used, places = used[order], places[order]
-    axis = driven_axis(direction_of(config, signals))
-    return (
-        replace(
-            model,
-            sensor_names=tuple(f"{point_of(signals.channels[each], axis)}.{axis}" for each in used),
-            sensor_shapes=model.sensor_shapes[:, used],
-            sensor_positions=model.sensor_positions[used],
-            sensor_directions=model.sensor_directions[used],
-            line_shapes=model.sensor_shapes[:, used],
-            line_positions=model.sensor_positions[used],
-            line_arc_length=places,
-        ),
-        force,
-        used,
-    )
-
-
-def point_of(channel: str, axis: str) -> str:
-    """Return the name of the point of a channel: its own, without the axis at its end."""
-    return channel.removesuffix(f".{axis}")
-
-
-def groups_of(config: ConfigPart) -> str | tuple[tuple[str, ...], ...]:
-    """Return identification.groups of a configuration, `all` if it has no identification."""
-    return "all" if config.identification is None else config.identification.groups
-
-
-def direction_of(config: ConfigPart, signals: CampaignSignals) -> tuple[float, ...]:
-    """Return the direction (3,) of the first force, or of the model's excitation."""
+    direction = tuple(getattr(config.excitation, "direction", (0.0, 1.0, 0.0)))
     if signals.forces:
-        return tuple(map(float, signals.force_directions[0]))
-    return tuple(getattr(config.excitation, "direction", (0.0, 1.0, 0.0)))
+        direction = tuple(map(float, signals.force_directions[0]))
+    axis = driven_axis(direction)
+    points = tuple(signals.channels[each].removesuffix(f".{axis}") for each in used)
+    sensed = replace(
+        model,
+        sensor_names=tuple(f"{point}.{axis}" for point in points),
+        sensor_shapes=model.sensor_shapes[:, used],
+        sensor_positions=model.sensor_positions[used],
+        sensor_directions=model.sensor_directions[used],
+        line_shapes=model.sensor_shapes[:, used],
+        line_positions=model.sensor_positions[used],
+        line_arc_length=places,
+    )
+    return MeasuredTube(signals, sensed, force, used, points, direction)

@@ -5,19 +5,17 @@ from collections.abc import Sequence
 import numpy as np
 
 from vibroimpact.campaign.file import SAME_POINT_M, CampaignError
-from vibroimpact.campaign.signals import CampaignSignals
 from vibroimpact.config.excitation import BandLimited
 from vibroimpact.config.schema import Broadband, Identification, Lscf
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.identify.linear.modes import driven_block, first_mode
 from vibroimpact.identify.peak import find_peak
-from vibroimpact.identify.spectra.welch import driven_axis, segment_spectra
+from vibroimpact.identify.spectra.welch import segment_spectra
 from vibroimpact.io.units import TIME_DERIVATIVES
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.study.cases import Case
 
-from .forces import KnownForce
-from .sensors import direction_of, point_of
+from .sensors import MeasuredTube
 
 HELD = 1.0e9  # N/m: a tube that its supports hold
 # References of LSCF if the model names none that was measured. More make it less stable at the low
@@ -29,43 +27,31 @@ LOW, SEARCH, LSCF, BROADBAND = 0.6, 1.4, 1.9, 3.0
 BEYOND = 1.3  # of the first frequency of the held tube: no main peak is sought above
 
 
-def measured_settings(
-    config: ConfigPart,
-    signals: CampaignSignals,
-    model: ModalModel,
-    force: KnownForce,
-    used: Sequence[int] | np.ndarray,
-) -> ConfigPart:
+def measured_settings(config: ConfigPart, tube: MeasuredTube) -> ConfigPart:
     """Return the configuration with the records and sensors of a campaign.
-
-    model: with its sensors.
-    used: (sensor,) indices of their channels.
 
     Raises CampaignError if the records are too coarsely sampled for it.
     """
-    axis = driven_axis(direction_of(config, signals))
-    names = [point_of(signals.channels[each], axis) for each in used]
-    identification = _with_sensors(config, signals, model, names, used)
-    low, high = force.band_Hz
+    rate, (low, high) = tube.signals.rate, tube.force.band_Hz
+    identification = _with_sensors(config, tube)
     # The linear tube is taken to be driven in the band of the spectra that are kept: see
     # spectra.measured_spectra.
-    band = (max(low, lowest_read_Hz(identification)), high)
-    segment_s = round(config.spectra.segment_s * signals.rate) / signals.rate
-    config = config.model_copy(
+    excitation = BandLimited(
+        kind="band_limited",
+        point="force",
+        direction=tube.direction,
+        band_Hz=(max(low, lowest_read_Hz(identification)), high),
+    )
+    segment_s = round(config.spectra.segment_s * rate) / rate
+    _require_rate(identification.lscf.band_Hz[1], rate)
+    return config.model_copy(
         update={
             "spectra": config.spectra.model_copy(update={"segment_s": segment_s}),
-            "record": config.record.model_copy(update={"sampling_frequency_Hz": signals.rate}),
-            "excitation": BandLimited(
-                kind="band_limited",
-                point="force",
-                direction=direction_of(config, signals),
-                band_Hz=band,
-            ),
+            "record": config.record.model_copy(update={"sampling_frequency_Hz": rate}),
+            "excitation": excitation,
             "identification": identification,
         }
     )
-    _require_rate(config, signals)
-    return config
 
 
 def lowest_read_Hz(identification: ConfigPart) -> float:
@@ -74,17 +60,16 @@ def lowest_read_Hz(identification: ConfigPart) -> float:
     return min(own.peak_search_Hz[0], own.lscf.band_Hz[0], own.broadband.band_Hz[0])
 
 
-def _with_sensors(config, signals, model, names, used) -> Identification:
+def _with_sensors(config: ConfigPart, tube: MeasuredTube) -> Identification:
     """Return the section identification with the names of channels as its points."""
-    own = config.identification or _around_the_peaks(config, signals, model, used)
-    response, broadband = (
-        _nearest(config, signals, names, used, point)
-        for point in (own.response_point, own.broadband.point)
-    )
-    by_size = [names[each] for each in _by_motion(model, own)]
-    references = [_nearest(config, signals, names, used, point) for point in own.lscf.references]
-    found = list(dict.fromkeys([*filter(None, references), *by_size[:REFERENCES]]))
-    most = max(REFERENCES, len(set(filter(None, references))))
+    own = config.identification or _around_the_peaks(config, tube)
+    response = _nearest(config, tube, own.response_point)
+    broadband = _nearest(config, tube, own.broadband.point)
+    by_size = [tube.points[each] for each in _by_motion(tube.model, own)]
+    near = [_nearest(config, tube, point) for point in own.lscf.references]
+    references = list(dict.fromkeys(filter(None, near)))
+    found = list(dict.fromkeys([*references, *by_size[:REFERENCES]]))
+    most = max(REFERENCES, len(references))
     return own.model_copy(
         update={
             "response_point": response or by_size[0],
@@ -94,12 +79,13 @@ def _with_sensors(config, signals, model, names, used) -> Identification:
     )
 
 
-def _nearest(config, signals, names, used, point) -> str | None:
+def _nearest(config: ConfigPart, tube: MeasuredTube, point: str) -> str | None:
     """Return the channel at a named point of the model, None if there is none."""
     if config.identification is None:
         return None
-    away = np.linalg.norm(signals.points[used] - np.array(config.points[point]), axis=1)
-    return names[int(np.argmin(away))] if away.min() < SAME_POINT_M else None
+    places = tube.signals.points[tube.channels]
+    away = np.linalg.norm(places - np.array(config.points[point]), axis=1)
+    return tube.points[int(np.argmin(away))] if away.min() < SAME_POINT_M else None
 
 
 def _by_motion(model: ModalModel, identification: Identification) -> list[int]:
@@ -112,16 +98,17 @@ def _by_motion(model: ModalModel, identification: Identification) -> list[int]:
     return np.argsort(-size, kind="stable").tolist()
 
 
-def _around_the_peaks(
-    config: ConfigPart, signals: CampaignSignals, model: ModalModel, used: np.ndarray
-) -> Identification:
+def _around_the_peaks(config: ConfigPart, tube: MeasuredTube) -> Identification:
     """Return bands that hold the main peaks of all records."""
+    signals, model = tube.signals, tube.model
     block = driven_block(model)
     free, held = (first_mode(model, block, k)[0] / (2.0 * np.pi) for k in (1.0, HELD))
     low, top = LOW * free, 0.0
-    orders = np.array([TIME_DERIVATIVES[signals.kinds[each]] for each in used])
+    orders = np.array([TIME_DERIVATIVES[signals.kinds[each]] for each in tube.channels])
     for response in signals.response:
-        spectra = segment_spectra(response[used], signals.rate, config.spectra, BEYOND * held)
+        spectra = segment_spectra(
+            response[tube.channels], signals.rate, config.spectra, BEYOND * held
+        )
         power = np.mean(np.abs(spectra.values) ** 2, axis=1)
         # As velocities: neither the drift of integrated noise nor that of high modes is largest.
         power = power * np.maximum(spectra.frequency, low) ** (2.0 * (1.0 - orders[:, None]))
@@ -139,13 +126,12 @@ def _around_the_peaks(
     )
 
 
-def _require_rate(config: ConfigPart, signals: CampaignSignals) -> None:
+def _require_rate(highest_Hz: float, rate: float) -> None:
     """Raise CampaignError if records do not reach up to the band of the identification."""
-    highest = 2.0 * config.identification.lscf.band_Hz[1]
-    if highest > 0.5 * signals.rate:
+    if 2.0 * highest_Hz > 0.5 * rate:
         raise CampaignError(
-            f"sampling_frequency = {signals.rate:g} Hz is too low for identification.lscf.band_Hz"
-            f" up to {0.5 * highest:g} Hz, which needs {2.0 * highest:g} Hz: give the model a lower"
+            f"sampling_frequency = {rate:g} Hz is too low for identification.lscf.band_Hz"
+            f" up to {highest_Hz:g} Hz, which needs {4.0 * highest_Hz:g} Hz: give the model a lower"
             " upper end"
         )
 

@@ -4,38 +4,37 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.campaign.base_motion import integrated
-from vibroimpact.campaign.signals import CampaignSignals
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.identify.broadband import UNKNOWN
 from vibroimpact.io.units import TIME_DERIVATIVES
-from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.study.case_spectra import case_spectra
 from vibroimpact.study.cases import Case
 
-from .forces import KnownForce, relative_psd
+from .forces import relative_psd
+from .sensors import MeasuredTube
 from .settings import lowest_read_Hz
 
 TIME_CONSTANTS = 5.0  # of the first mode, left out of a record that begins at rest
 
 
-def displacements(
-    config: ConfigPart, signals: CampaignSignals, record: int, used: np.ndarray, first: int
-) -> np.ndarray:
-    """Return (sensor, time) the displacement in m of a record, from its sample `first` on.
+def displacements(config: ConfigPart, tube: MeasuredTube, record: int) -> np.ndarray:
+    """Return (sensor, time) the displacement in m of a record, from stationary motion on.
 
     Accelerations and velocities are integrated over time above half the lowest frequency that the
     identification reads.
     """
-    low_Hz = lowest_read_Hz(config.identification)
-    series = signals.response[record][used].copy()
-    for row, channel in enumerate(used):
+    signals, low_Hz = tube.signals, lowest_read_Hz(config.identification)
+    series = signals.response[record][tube.channels].copy()
+    for row, channel in enumerate(tube.channels):
         for _ in range(TIME_DERIVATIVES[signals.kinds[channel]]):
             series[row] = integrated(series[row] - series[row].mean(), signals.rate, low_Hz)
-    return series[:, first:] - series[:, first:].mean(axis=1, keepdims=True)
+    kept = series[:, first_sample(tube) :]
+    return kept - kept.mean(axis=1, keepdims=True)
 
 
-def first_sample(signals: CampaignSignals, model: ModalModel) -> int:
+def first_sample(tube: MeasuredTube) -> int:
     """Return the first sample of a record at which the motion is stationary."""
+    signals, model = tube.signals, tube.model
     transient = signals.transient_periods * signals.period_samples if signals.forces else 0
     if not signals.starts_at_rest:
         return transient
@@ -43,24 +42,15 @@ def first_sample(signals: CampaignSignals, model: ModalModel) -> int:
     return max(transient, int(min(TIME_CONSTANTS / slowest, 10.0) * signals.rate))
 
 
-def measured_spectra(
-    config: ConfigPart,
-    signals: CampaignSignals,
-    model: ModalModel,
-    force: KnownForce,
-    used: np.ndarray,
-    placed: tuple[int, Case],
-) -> xr.Dataset:
+def measured_spectra(config: ConfigPart, tube: MeasuredTube, record: int, case: Case) -> xr.Dataset:
     """Return the spectra of a record, and the relative PSD of its force if it is not white.
 
     Those of the sensors are 0 below the lowest frequency that is read, below which integrated
     noise grows without end.
 
     config: of measured_settings.
-    placed: (record, Case).
     """
-    record, case = placed
-    moved = displacements(config, signals, record, used, first_sample(signals, model))
+    moved = displacements(config, tube, record)
     dims = ("sensor", "time")
     series = xr.Dataset(
         {
@@ -68,11 +58,11 @@ def measured_spectra(
             "acceleration": (dims, np.zeros_like(moved)),
             "line_displacement": (("line_point", "time"), moved),
         },
-        {"sensor": list(model.sensor_names)},
+        {"sensor": list(tube.model.sensor_names)},
         {"case": case.id, "load_rms_N": case.load_rms_N, "gap_m": case.gap_m, "seed": case.seed},
     )
     spectra = case_spectra(config, series).assign_attrs(
-        record=signals.records[record], force="known" if force.known else UNKNOWN
+        record=tube.signals.records[record], force="known" if tube.force.known else UNKNOWN
     )
     omega = 2.0 * np.pi * spectra["frequency"]
     for name in ("mean", "min", "max"):
@@ -81,5 +71,5 @@ def measured_spectra(
     for part in ("re", "im"):
         spectra[f"sensor_spectra_{part}"] = spectra[f"sensor_spectra_{part}"] * kept
     frequency = spectra["low_frequency"].values
-    psd = relative_psd(config, signals, record, force, frequency)
+    psd = relative_psd(config, tube.signals, record, tube.force, frequency)
     return spectra if psd is None else spectra.assign(force_psd=("low_frequency", psd))

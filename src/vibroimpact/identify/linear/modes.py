@@ -29,6 +29,16 @@ def contact_matrix(model: ModalModel) -> np.ndarray:
     )
 
 
+def transfer(receptance: np.ndarray, left: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Return (frequency, left, right) the motion along shapes per unit force along others, m/N.
+
+    receptance: (frequency, mode) s². left, right: (mode, left) and (mode, right) kg^-1/2.
+    """
+    pairs = left[:, :, None] * right[:, None, :]
+    moved = receptance @ pairs.reshape(len(pairs), pairs.shape[1] * pairs.shape[2])
+    return moved.reshape(len(receptance), *pairs.shape[1:])
+
+
 def driven_block(model: ModalModel) -> np.ndarray:
     """Return (mode,) indices of the uncoupled block that the force channels move most.
 
@@ -60,16 +70,14 @@ def natural_frequencies(model: ModalModel, k: float, count: int) -> np.ndarray:
     return np.sqrt(np.maximum(lowest, 0.0)) / (2.0 * np.pi)
 
 
-def first_mode_shape(model: ModalModel, k: float, shapes: np.ndarray | None = None) -> np.ndarray:
-    """Return (output,) the first mode of the driven block with support stiffness k in N/m.
+def first_mode_shape(model: ModalModel, k: float) -> np.ndarray:
+    """Return (line_point,) the first mode of the driven block with support stiffness k in N/m.
 
     It has unit modal mass (kg^-1/2), and its largest component is positive.
-
-    shapes: (mode, output) of the outputs; model.line_shapes by default.
     """
     modes = driven_block(model)
     _, vector = first_mode(model, modes, k)
-    shape = (model.line_shapes if shapes is None else shapes)[modes].T @ vector
+    shape = model.line_shapes[modes].T @ vector
     return shape if shape[np.argmax(np.abs(shape))] > 0.0 else -shape
 
 

@@ -1,4 +1,4 @@
-"""The first pole of the linear tube on a support (k, c), and the support that has a given pole.
+"""The first pole of the linear tube on a support (k, c).
 
 A pole p of the tube solves (p² + p (diag(damping) + c W) + diag(omega²) + k W) x = 0; `modes`
 defines W.
@@ -7,7 +7,6 @@ defines W.
 from typing import Any
 
 import numpy as np
-from scipy import linalg
 
 from vibroimpact.reduction.modal_model import ModalModel
 
@@ -42,51 +41,6 @@ def first_pole(model: ModalModel, k: float, c: float) -> complex:
     Raises PoleError when it cannot be followed to c (the message says how far it was), or k leaves
     the tube unstable.
     """
-    return _follow_first_mode(model, k, c)[0]
-
-
-def support_from_pole(model: ModalModel, pole: complex) -> tuple[float, float]:
-    """Return (k in N/m, c in N s/m) of the support that gives the first mode a pole in rad/s.
-
-    This is the exact inverse of first_pole. p is a pole if I + (k + p c) G(p) is singular, with
-    the contact compliance G = B^T (p² + p damping + omega²)^-1 B of the tube without support, so
-    that k + p c = -1/eigenvalue of G(p). Every candidate is checked with first_pole; the fast form
-    without this check is identify.equivalent_support.
-
-    Raises ValueError when no support gives the first mode this pole, as above the clamped
-    frequency.
-    """
-    if pole.imag <= 0.0:
-        raise ValueError(f"pole {pole} rad/s must have a positive imaginary part")
-    modes = driven_block(model)
-    contact = contact_matrix(model)[modes]
-    dynamic = pole**2 + pole * model.damping[modes] + model.omega[modes] ** 2
-    flexibility = linalg.eigvals((contact.T / dynamic) @ contact)
-    supports = -1.0 / flexibility[np.abs(flexibility) > 1.0e-14 * np.abs(flexibility).max()]
-    damping = supports.imag / pole.imag
-    stiffness = supports.real - pole.real * damping
-    # Stable supports come first (positive stiffness), and among them the smallest.
-    order = np.lexsort((np.abs(supports), stiffness < 0.0))
-    for k, c in zip(stiffness[order], damping[order], strict=True):
-        try:
-            if abs(first_pole(model, k, c) - pole) < 1.0e-6 * abs(pole):
-                return float(k), float(c)
-        except ValueError:
-            # This support belongs to another mode, or the first mode cannot be followed to it.
-            continue
-    raise ValueError(
-        f"no support gives the first mode the pole {pole:.6g} rad/s"
-        f" ({abs(pole) / (2.0 * np.pi):.4g} Hz)"
-    )
-
-
-def _follow_first_mode(
-    model: ModalModel, k: float, c: float
-) -> tuple[complex, np.ndarray, np.ndarray]:
-    """Return (pole in rad/s, complex vector (mode,), mode indices (mode,)) of the first mode.
-
-    The mode is that of the driven block, followed from c = 0.
-    """
     modes = driven_block(model)
     contact, damping = contact_matrix(model)[modes], model.damping[modes]
     stiffness = support_stiffness(model.omega[modes], contact, k)
@@ -112,7 +66,7 @@ def _follow_first_mode(
                 ) from None
             continue
         reached, step = target, 2.0 * step
-    return pole, vector, modes
+    return pole
 
 
 def _refine_pole(
@@ -160,8 +114,7 @@ def _pole_slope(
 ) -> complex:
     """Return d pole / d s in rad/s per N/m for a support s = k + pole c.
 
-    It follows from the symmetric quadratic eigenvalue problem, whose left eigenvector is the right
-    one.
+    The left eigenvector of the symmetric quadratic problem is the right one.
     """
     moved = contact.T @ vector
     strength = moved @ moved

@@ -15,7 +15,7 @@ import numpy as np
 from vibroimpact.io.units import TIME_DERIVATIVES
 from vibroimpact.reduction.modal_model import ModalModel
 
-from .modes import contact_matrix
+from .modes import contact_matrix, transfer
 
 FREQUENCY_CHUNK = 4096
 
@@ -81,27 +81,24 @@ def psd_family(
     c_grid: np.ndarray,
     frequency: np.ndarray,
     shape: np.ndarray,
-    kind: str = "displacement",
 ) -> np.ndarray:
-    """Return (k, c, frequency) squared magnitude of the response per N: PSD per unit force PSD.
+    """Return (k, c, frequency) (m/N)²: PSD of the displacement per unit PSD of the force.
 
-    The forces of several channels are independent and have the same PSD. The unit is (m/N)²,
-    (m/s/N)² or (m/s²/N)². With G = V diag(l) V^-1 at one frequency, the response is
-    h_free - sum_j (a V)_j (V^-1 b)_j s / (1 + s l_j). One eigenvalue problem per frequency serves
-    all (k, c).
+    The forces of several channels are independent and have the same PSD. With G = V diag(l) V^-1 at
+    one frequency, the response is h_free - sum_j (a V)_j (V^-1 b)_j s / (1 + s l_j). One eigenvalue
+    problem per frequency serves all (k, c).
 
     k_grid: (k,) N/m.
     c_grid: (c,) N s/m.
     frequency: (frequency,) Hz.
     shape: (mode,) of the output.
-    kind: as in frf.
     """
     channels = range(model.drive_shapes.shape[1])
     grids = (k_grid, c_grid, np.asarray(frequency, dtype=float))
     total = _channel_psds(model, *grids, shape, 0)
     for channel in channels[1:]:
         total = total + _channel_psds(model, *grids, shape, channel)
-    return total * (2.0 * np.pi * grids[2]) ** (2 * TIME_DERIVATIVES[kind])
+    return total
 
 
 def _channel_psds(
@@ -151,17 +148,13 @@ def _contact_receptances(
     modes = np.sort(np.concatenate(driven)) if driven else np.zeros(0, dtype=int)
     contact = contact_matrix(model)[modes]
     contact = contact[:, (contact != 0.0).any(axis=0)]
-    drive, outputs = model.drive_shapes[modes, channel], output_shapes[modes]
+    drive, outputs = model.drive_shapes[modes, channel][:, None], output_shapes[modes]
     receptance = 1.0 / (
         laplace[:, None] ** 2 + laplace[:, None] * model.damping[modes] + model.omega[modes] ** 2
     )
-    rows = contact.shape[1]
-    count = outputs.shape[1]
-    pairs = (contact[:, :, None] * contact[:, None, :]).reshape(len(modes), rows * rows)
-    seen = (outputs[:, :, None] * contact[:, None, :]).reshape(len(modes), count * rows)
     return (
-        receptance @ (drive[:, None] * outputs),
-        (receptance @ pairs).reshape(len(laplace), rows, rows),
-        receptance @ (drive[:, None] * contact),
-        (receptance @ seen).reshape(len(laplace), count, rows),
+        transfer(receptance, drive, outputs)[:, 0],
+        transfer(receptance, contact, contact),
+        transfer(receptance, drive, contact)[:, 0],
+        transfer(receptance, outputs, contact),
     )

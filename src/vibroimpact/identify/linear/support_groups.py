@@ -120,14 +120,18 @@ def _support_direction(
     )
 
 
-def reached_modes(
-    model: ModalModel, directions: Sequence[SupportDirection]
-) -> tuple[np.ndarray, list[bool]]:
-    """Return (mode indices (mode,), bool of each direction) that the force moves.
+@lru_cache(maxsize=2)
+def reached_supports(
+    model: ModalModel, groups: str | tuple[tuple[str, ...], ...]
+) -> tuple[tuple[SupportDirection, ...], np.ndarray]:
+    """Return (the SupportDirections that the force moves, indices of the modes that it moves).
 
-    A force moves modes; these move supports, which move further modes. Raises ValueError when no
-    support is moved.
+    They are the unknowns of the identification. A force moves modes; these move supports, which
+    move further modes. Raises ValueError if the force moves no support.
+
+    groups: identification.groups.
     """
+    directions = support_directions(model, groups)
     moved = np.any(model.drive_shapes != 0.0, axis=1)
     reached = [False] * len(directions)
     while True:
@@ -143,22 +147,7 @@ def reached_modes(
         raise ValueError(
             "the force moves no contact point: no support stiffness can be seen from it"
         )
-    return np.flatnonzero(moved), reached
-
-
-@lru_cache(maxsize=2)
-def reached_supports(
-    model: ModalModel, groups: str | tuple[tuple[str, ...], ...]
-) -> tuple[tuple[SupportDirection, ...], np.ndarray]:
-    """Return (the SupportDirections that the force moves, indices of the modes that it moves).
-
-    They are the unknowns of the identification. Raises ValueError if the force moves none.
-
-    groups: identification.groups.
-    """
-    directions = support_directions(model, groups)
-    modes, reached = reached_modes(model, directions)
-    return tuple(itertools.compress(directions, reached)), modes
+    return tuple(itertools.compress(directions, reached)), np.flatnonzero(moved)
 
 
 def acts_on_all(direction: SupportDirection, model: ModalModel, modes: np.ndarray) -> bool:

@@ -21,6 +21,7 @@ import numpy as np
 
 from vibroimpact.reduction.modal_model import ModalModel
 
+from .modes import transfer
 from .support_groups import SupportDirection
 
 RIGID = 1.0  # (rad/s)², so that a rigid motion has a static compliance
@@ -75,26 +76,19 @@ class SupportedStructure:
         self.owner = np.repeat(np.arange(len(directions)), sizes)
         laplace = 2j * np.pi * frequency[:, None]
         self._receptance = 1.0 / (laplace**2 + laplace * self.damping + self.omega**2)
-        self._compliance = self._products(self.contact, self.contact)
+        self._compliance = transfer(self._receptance, self.contact, self.contact)
         self._reached = self._driven(self.contact)
-
-    def _products(
-        self, left: np.ndarray, right: np.ndarray, part: slice | np.ndarray = slice(None)
-    ) -> np.ndarray:
-        """Return (frequency, left column, right column) left^T R right."""
-        pairs = (left[:, :, None] * right[:, None, :]).reshape(len(left), -1)
-        return (self._receptance[part] @ pairs).reshape(-1, left.shape[1], right.shape[1])
 
     def _driven(self, shapes: np.ndarray, part: slice | np.ndarray = slice(None)) -> np.ndarray:
         """Return (frequency, output, channel) the motion of outputs by the forces."""
-        moved = self._products(shapes, self.drive, part)
+        moved = transfer(self._receptance[part], shapes, self.drive)
         return moved if self._root is None else moved * self._root[part]
 
     def observed(self, shapes: np.ndarray, part: slice | np.ndarray = slice(None)) -> Observed:
         """Return the Observed of outputs with shapes (mode of the model, output)."""
         outputs = shapes[self.modes]
         free = self._driven(outputs, part)
-        return Observed(free, self._products(self.contact, outputs, part), part)
+        return Observed(free, transfer(self._receptance[part], self.contact, outputs), part)
 
     def dynamic_stiffness(
         self, k: np.ndarray, c: np.ndarray, part: slice | np.ndarray = slice(None)

@@ -7,22 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 HALVINGS = 60  # of the interval that holds a time
-
-
-class WearLaw(Protocol):
-    """A law of wear. name: of its row in a table. coefficient: m²/N, None for a law without one."""
-
-    @property
-    def name(self) -> str: ...  # noqa: D102
-    @property
-    def coefficient(self) -> float | None: ...  # noqa: D102
-    def seconds(self, volume: np.ndarray, power: np.ndarray) -> np.ndarray:  # noqa: D102
-        ...
 
 
 @dataclass(frozen=True)
@@ -68,6 +56,8 @@ class EdfMz:
             low, high = np.where(late, low, middle), np.where(late, middle, high)
         return 0.5 * (low + high)
 
+
+WearLaw = Archard | EdfMz
 
 # Coefficients K of pairs of materials, tube over support, by the shape of the support. m²/N.
 PAIRS = {
