@@ -10,8 +10,8 @@ from tests.support.sound_campaign import sound_campaign
 from vibroimpact.campaign.importing.sidecar import read_sidecar
 from vibroimpact.io.records import read_table, write_table
 from vibroimpact.io.signal_files.signals import ImportProblem
-from vibroimpact.reports.figures.discrepancy.quicklook import quicklook
 from vibroimpact.reports.figures.drawing import drawn
+from vibroimpact.reports.figures.quicklook import quicklook
 
 NAMES = ["=1+2", "+low", "-tip", "@shaker", "'=1", "''+x", "'x", "-", "plain", "-1.5", "\tx", "+ y"]
 
@@ -42,7 +42,7 @@ def test_names_are_drawn_letter_by_letter(tmp_path):
     campaign = sound_campaign()
     campaign["channel_name"].values[:] = ["$x_{$", "=1+2", "tip <b>"]
     campaign["record_name"].values[:] = ["+low", "$\\frac$", "@high"]
-    sheet = drawn(*quicklook(campaign))
+    sheet = drawn(quicklook(campaign))
     sheet.save(tmp_path)
     texts = sheet.figure.findobj(Text)
     assert any(text.get_text().startswith("$x_{$, acceleration") for text in texts)

@@ -29,8 +29,8 @@ from vibroimpact.equivalent_support.measured.usable import identification_proble
 from vibroimpact.equivalent_support.study_answer import equivalent
 from vibroimpact.io.records import read_table, write_record, write_table
 from vibroimpact.reduction.reduced_model import build_model
-from vibroimpact.reports.figures.discrepancy.quicklook import quicklook
 from vibroimpact.reports.figures.drawing import drawn
+from vibroimpact.reports.figures.quicklook import quicklook
 from vibroimpact.reports.figures.study.measured import study_beside
 from vibroimpact.study.run_files import write_run_files
 
@@ -247,7 +247,7 @@ def test_its_report_says_that_no_force_was_measured(plant):
     assert [row["check"] for row in checks] == ["content"]
     text = import_text(plant, imported, rows, checks)
     assert "no force, gap 0.2889 mm" in text and "The campaign holds no force" in text
-    sheet = drawn(*quicklook(imported))
+    sheet = drawn(quicklook(imported))
     assert {curve for _, curve, _ in sheet.tables} == {"calm", "rough"}
 
 

@@ -15,6 +15,7 @@ from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.reports.figures import drawing
 from vibroimpact.reports.figures.sheet import Sheet
 from vibroimpact.reports.figures.study import contact, support_views, tube
+from vibroimpact.reports.figures.view import View
 from vibroimpact.structure.contact.outline import radial_gap
 from vibroimpact.structure.tube import build_structure
 
@@ -40,9 +41,9 @@ def drawn(values):
     config = settings(values)
     structure = build_structure(config)
     plots = [
-        *tube.figure_01_layout(config, structure),
-        *tube.figure_02_free_modes(config, structure),
-        *contact.figure_03_contact_law(config, structure),
+        tube.figure_01_layout(config, structure),
+        tube.figure_02_free_modes(config, structure),
+        contact.figure_03_contact_law(config, structure),
     ]
     return {plot.name: drawing.drawn(plot) for plot in plots}
 
@@ -138,7 +139,7 @@ def test_one_sided_stop_is_drawn_on_its_side_only():
 )
 def test_side_of_the_reader_follows_the_right_hand(plane, towards):
     right, up, _ = np.eye(3)[list(plane)]
-    assert np.cross(right, up)[plane[2]] == tube.towards_reader(plane) == towards
+    assert np.cross(right, up)[plane[2]] == View(*plane).towards == towards
 
 
 def test_tube_in_the_y_z_plane_is_seen_along_x():

@@ -118,44 +118,46 @@ def sheets(config, study, tmp_path_factory):
         folder / "campaign.nc",
     )
     part, structure = parts["figures_model"], build_structure(parts["figures_model"])
-    plots = tube.figure_01_layout(part, structure) + tube.figure_02_free_modes(part, structure)
-    plots += (
-        contact.figure_03_contact_law(part, structure)
-        + contact.figure_04_first_frequency(part)
-        + basis.basis_quality(part, basis_frequency_errors(config))
-    )
+    plots = [
+        tube.figure_01_layout(part, structure),
+        tube.figure_02_free_modes(part, structure),
+        contact.figure_03_contact_law(part, structure),
+        contact.figure_04_first_frequency(part),
+        basis.basis_quality(part, basis_frequency_errors(config)),
+    ]
     part = parts["figures_response"]
     responses = psd_table.gather(part, model, found["spectra"].values())
-    plots += overlay.figure_05_overlay(
-        part, model, responses, read_campaign(folder / "campaign.nc")
-    )
-    plots += response.figure_06_levels(
-        part, model, responses
-    ) + response.figure_07_overlay_of_loads(part, model, responses)
-    plots += response.figure_08_load_and_stiffness(
-        part, model, responses
-    ) + response.in_plane_share(part, responses)
-    part = parts["figures_identification"]
-    plots += poles.figure_09_poles(part, model, of_gap["curves"], of_gap["spectra"], gap_rows)
-    plots += stabilisation.figure_09_stabilisation(
-        part, of_gap["curves"], of_gap["spectra"], gap_rows
-    )
-    plots += shapes.figure_10_shapes(
-        part, model, of_gap["curves"], gap_rows
-    ) + shapes.figure_11_singular_values(part, of_gap["curves"])
-    plots += broadband.figure_12_broadband(
-        part, model, of_gap["curves"], of_gap["spectra"], gap_rows
-    )
+    campaign = read_campaign(folder / "campaign.nc")
+    plots += [
+        overlay.figure_05_overlay(part, model, responses, campaign),
+        response.figure_06_levels(part, model, responses),
+        response.figure_07_overlay_of_loads(part, model, responses),
+        response.figure_08_load_and_stiffness(part, model, responses),
+        response.in_plane_share(part, responses),
+    ]
+    part, files = parts["figures_identification"], (of_gap["curves"], of_gap["spectra"])
+    plots += figures_identification(part, model, *files, gap_rows)
     part = parts["figures_checks"]
-    plots += equivalent.figure_13_equivalent_support(part, model, rows) + equivalent.collapse(
-        part, model, rows
-    )
-    plots += checks.energy_balance(part, found["records"]) + checks.contact_statistics(
-        part, model, found["records"]
-    )
+    plots += [
+        equivalent.figure_13_equivalent_support(part, model, rows),
+        equivalent.collapse(part, model, rows),
+        checks.energy_balance(part, found["records"]),
+        checks.contact_statistics(part, model, found["records"]),
+    ]
     found = [*map(drawn, plots)]
     save_plots(found, folder)
     return {sheet.name: sheet for sheet in found}, folder
+
+
+def figures_identification(config, model, curves, spectra, rows):
+    """The Plots of the identifications."""
+    return [
+        poles.figure_09_poles(config, model, curves, spectra, rows),
+        stabilisation.figure_09_stabilisation(config, curves, spectra, rows),
+        shapes.figure_10_shapes(config, model, curves, rows),
+        shapes.figure_11_singular_values(config, curves),
+        broadband.figure_12_broadband(config, model, curves, spectra, rows),
+    ]
 
 
 def declared():
@@ -439,15 +441,11 @@ def test_unresolved_study_still_has_its_figures(config, study, tmp_path):
         case: dataset.assign(peak_curve=dataset["peak_curve"] * np.nan)
         for case, dataset in bare.items()
     }
-    plots = equivalent.figure_13_equivalent_support(
-        config, model, unresolved
-    ) + equivalent.collapse(config, model, unresolved)
-    plots += poles.figure_09_poles(config, model, empty, found["spectra"], unresolved)
-    plots += stabilisation.figure_09_stabilisation(config, empty, found["spectra"], unresolved)
-    plots += shapes.figure_10_shapes(
-        config, model, empty, unresolved
-    ) + shapes.figure_11_singular_values(config, empty)
-    plots += broadband.figure_12_broadband(config, model, empty, found["spectra"], unresolved)
+    plots = [
+        equivalent.figure_13_equivalent_support(config, model, unresolved),
+        equivalent.collapse(config, model, unresolved),
+        *figures_identification(config, model, empty, found["spectra"], unresolved),
+    ]
     for plot in plots:
         save_plots([plot], tmp_path)
         assert (tmp_path / f"{plot.name}.png").is_file()

@@ -85,7 +85,7 @@ def test_a_missing_file_is_named(paths):
 
 def test_the_figure_shows_every_part_of_every_rule(paths, tmp_path):
     rows = study_timing(*paths)
-    sheet = drawn(*timing(SimpleNamespace(study="mine"), rows))
+    sheet = drawn(timing(SimpleNamespace(study="mine"), rows))
     sheet.save(tmp_path)
     with open(tmp_path / "timing.csv", newline="", encoding="utf-8") as file:
         shown = {(row["rule"], row["curve"]): float(row["cpu_s"]) for row in csv.DictReader(file)}

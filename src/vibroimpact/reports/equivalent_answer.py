@@ -112,6 +112,12 @@ def answers(
     return sorted(found, key=lambda row: (-row.gap_m, row.group, row.direction, row.load_rms_N))
 
 
+def places_of(answers: Sequence[Answer]) -> tuple[list[float], list[tuple[str, str]]]:
+    """Return (gaps in m, (group, direction) pairs), each once, in the order of the answers."""
+    gaps = list(dict.fromkeys(row.gap_m for row in answers))
+    return gaps, list(dict.fromkeys((row.group, row.direction) for row in answers))
+
+
 def _place(row: dict) -> tuple[float, float, str, str]:
     return float(row["gap_m"]), float(row["load_rms_N"]), row["group"], row["direction"]
 
@@ -130,24 +136,25 @@ def _answer(row: dict[str, Any], methods: dict[str, dict]) -> Answer:
 
     def value(quantity):
         medians = {
-            name: _number(methods[name][f"{quantity}_median"])
+            name: number_or_nan(methods[name][f"{quantity}_median"])
             for name in COMPARED[quantity]
             if name in methods
         }
         return Value(
-            _number(row[f"{quantity}_{UNITS[quantity]}"]),
-            _number(row[f"{quantity}_low"]),
-            _number(row[f"{quantity}_high"]),
+            number_or_nan(row[f"{quantity}_{UNITS[quantity]}"]),
+            number_or_nan(row[f"{quantity}_low"]),
+            number_or_nan(row[f"{quantity}_high"]),
             str(row[f"agreement_{quantity}"]),
             _text(row[f"reason_{quantity}"]),
             {name: median for name, median in medians.items() if math.isfinite(median)},
         )
 
-    bound, touching = (_number(row.get(name)) for name in ("k_bound", "contact_fraction"))
+    bound, touching = (number_or_nan(row.get(name)) for name in ("k_bound", "contact_fraction"))
     return Answer(*_place(row), value("k"), value("c"), bound, touching)
 
 
-def _number(value: Any) -> float:
+def number_or_nan(value: Any) -> float:
+    """Return a cell of a table as a number, NaN if it is a text."""
     return float(value) if isinstance(value, (int, float)) else math.nan
 
 

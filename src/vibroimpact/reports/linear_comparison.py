@@ -14,6 +14,7 @@ from vibroimpact.campaign.importing.frf import FrequencyResponses
 from vibroimpact.campaign.signals import Transfer, campaign_signals, transfer_or_reason
 from vibroimpact.config.schema import Config
 from vibroimpact.diagnosis.measurement.attached_model import attach
+from vibroimpact.identify.ods import mac
 from vibroimpact.identify.stabilisation import stable_poles
 from vibroimpact.io.units import SI_OF_KIND, TIME_DERIVATIVES
 from vibroimpact.reduction.modal_model import ModalModel
@@ -121,7 +122,7 @@ def _partner(model: ModalModel, place: float, shape: np.ndarray) -> Sequence[flo
     near = np.flatnonzero(np.abs(frequency - place) < NEAR * place)
     if not near.size:
         return (np.nan,) * 4
-    macs = np.array([_mac(shape, model.sensor_shapes[mode]) for mode in near])
+    macs = mac(model.sensor_shapes[near], shape)
     best = int(np.argmax(macs - np.abs(frequency[near] / place - 1.0)))
     mode = near[best]
     ratio = model.damping[mode] / (2.0 * model.omega[mode])
@@ -133,12 +134,6 @@ def _real_residues(lines: np.ndarray, h1: np.ndarray) -> np.ndarray:
     columns = np.hstack([lines.real, lines.imag]).T
     scale = np.linalg.norm(columns, axis=0)
     return np.linalg.lstsq(columns / scale, np.hstack([h1.real, h1.imag]))[0] / scale
-
-
-def _mac(first: np.ndarray, second: np.ndarray) -> float:
-    """Return the modal assurance criterion of two real shapes (channel,), 0 to 1."""
-    lengths = (first @ first) * (second @ second)
-    return float((first @ second) ** 2 / lengths) if lengths > 0.0 else 0.0
 
 
 def comparison_text(modes: list[dict], checks: list[dict]) -> list[str]:

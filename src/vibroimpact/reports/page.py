@@ -37,14 +37,16 @@ def embedded(figures: Iterable[Path]) -> list[dict]:
 
     The caption is in a .txt file of the same name.
     """
-    return [_embedded(file, file.read_bytes()) for file in map(Path, figures)]
-
-
-def _embedded(file: Path, content: bytes) -> dict:
-    pixels = int.from_bytes(content[16:20], "big")  # the width in the header of a PNG file
-    return {
-        "name": file.stem,
-        "caption": file.with_suffix(".txt").read_text(encoding="utf-8"),
-        "data": base64.b64encode(content).decode(),
-        "percent": min(100, round(100 * pixels / WHOLE_PX)),
-    }
+    found = []
+    for file in map(Path, figures):
+        content = file.read_bytes()
+        pixels = int.from_bytes(content[16:20], "big")  # the width in the header of a PNG file
+        found.append(
+            {
+                "name": file.stem,
+                "caption": file.with_suffix(".txt").read_text(encoding="utf-8"),
+                "data": base64.b64encode(content).decode(),
+                "percent": min(100, round(100 * pixels / WHOLE_PX)),
+            }
+        )
+    return found

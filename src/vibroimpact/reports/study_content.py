@@ -16,9 +16,8 @@ from .number_text import digits
 from .study_statistics import StudyStatistics
 from .study_tables import (
     answer_table,
-    contact_table,
-    element_table,
     energy_table,
+    place_table,
     reason_table,
     spread_evenly,
     stress_table,
@@ -167,29 +166,25 @@ class StudyContent:
 
     def answer_tables(self) -> list[tuple[float, Table]]:
         """Return (gap in m, table of the recommended values) of each gap."""
-        gaps = list(dict.fromkeys(row.gap_m for row in self.answers))
-        return [
-            (
-                gap,
-                answer_table(
-                    [row for row in self.answers if row.gap_m == gap], self.several, self.unit
-                ),
-            )
-            for gap in gaps
-        ]
+        rows: dict[float, list[Answer]] = {}
+        for row in self.answers:
+            rows.setdefault(row.gap_m, []).append(row)
+        return [(gap, answer_table(own, self.several, self.unit)) for gap, own in rows.items()]
 
     def reasons(self) -> Table:
         """Return why values are not resolved, or differ."""
         return reason_table(self.answers, self.statistics, self.several, self.unit)
 
-    def contact_tables(self) -> list[tuple[float, Table]]:
-        """Return (gap in m, contact and wear by load and support) of each gap."""
-        if not self.statistics.supports:
-            return []
+    def place_tables(self, kind: str) -> list[tuple[float, Table]]:
+        """Return (gap in m, table by load and support or local element) of each gap.
+
+        kind: support, with contact and wear; element, with power and work.
+        """
+        places = {"support": self.statistics.supports, "element": self.statistics.elements}
         loads = self.loads_in_tables()
         return [
-            (gap, contact_table(self.statistics, gap, loads, self.unit))
-            for gap in self.statistics.gaps
+            (gap, place_table(self.statistics, kind, gap, loads, self.unit))
+            for gap in (self.statistics.gaps if places[kind] else [])
         ]
 
     def wear_tables(self) -> list[tuple[float, Table]]:
@@ -198,16 +193,6 @@ class StudyContent:
         return [
             (gap, wear_table(self.worn, gap, loads, self.unit))
             for gap in dict.fromkeys(row.gap_m for row in self.worn)
-        ]
-
-    def element_tables(self) -> list[tuple[float, Table]]:
-        """Return (gap in m, power and work of the local elements) of each gap."""
-        if not self.statistics.elements:
-            return []
-        loads = self.loads_in_tables()
-        return [
-            (gap, element_table(self.statistics, gap, loads, self.unit))
-            for gap in self.statistics.gaps
         ]
 
     def stress(self) -> Table:

@@ -9,9 +9,9 @@ from itertools import groupby
 
 from .equivalent_answer import Answer, Value
 from .number_text import digits
-from .study_statistics import RESIDUALS, SEVERAL, Spread, StudyStatistics
+from .study_statistics import RESIDUALS, SEVERAL, StudyStatistics
 from .study_words import stiffness_unit
-from .table import Table
+from .table import Table, table_of
 
 AGREEMENTS = {
     "agree": "agree",
@@ -40,6 +40,8 @@ ELEMENT_COLUMNS = {
     "slip_power": ("slip power (W)", 1.0),
     "slip_work": ("slip work (J)", 1.0),
 }
+PLACE = ("supports", "direction")  # left out of the tables of a study with one place
+PLACES = {"support": SUPPORT_COLUMNS, "element": ELEMENT_COLUMNS}
 
 
 def answer_table(answers: Sequence[Answer], several: bool, unit: str) -> Table:
@@ -49,29 +51,21 @@ def answer_table(answers: Sequence[Answer], several: bool, unit: str) -> Table:
     unit: of the load.
     """
     stiffness, factor = stiffness_unit([row.k.value for row in answers])
-    places = ("supports", "direction") if several else ()
-    columns = (
-        "gap (mm)",
-        *places,
-        f"load ({unit} RMS)",
-        f"k ({stiffness})",
-        "interval of k",
-        "methods on k",
-        "c (N s/m)",
-        "interval of c",
-        "methods on c",
-    )
     rows = [
-        (
-            digits(1e3 * row.gap_m),
-            *((row.group, row.direction) if several else ()),
-            digits(row.load_rms_N),
-            *_value_cells(row, "k", factor),
-            *_value_cells(row, "c", 1.0),
-        )
+        {
+            **_place_cells(row),
+            f"load ({unit} RMS)": digits(row.load_rms_N),
+            **_value_cells(row, "k", stiffness, factor),
+            **_value_cells(row, "c", "N s/m", 1.0),
+        }
         for row in answers
     ]
-    return Table(columns, rows)
+    return table_of(rows, () if several else PLACE)
+
+
+def _place_cells(row: Answer) -> dict[str, str]:
+    """Return the cells of gap, group of supports and direction."""
+    return {"gap (mm)": digits(1e3 * row.gap_m), "supports": row.group, "direction": row.direction}
 
 
 def agreement_in_words(row: Answer, quantity: str) -> str:
@@ -83,14 +77,20 @@ def agreement_in_words(row: Answer, quantity: str) -> str:
     return words.get(value.agreement, value.agreement)
 
 
-def _value_cells(row: Answer, quantity: str, factor: float) -> tuple[str, str, str]:
+def _value_cells(row: Answer, quantity: str, unit: str, factor: float) -> dict[str, str]:
+    """Return the cells of k or c in a unit: value, interval, agreement."""
     value: Value = getattr(row, quantity)
-    agreement = agreement_in_words(row, quantity)
+    shown, interval = "-", "-"
     if row.bounded and quantity == "k":
-        return f"< {digits(factor * row.bound)}", "-", agreement
-    if not value.resolved:
-        return "-", "-", agreement
-    return digits(factor * value.value), span(factor * value.low, factor * value.high), agreement
+        shown = f"< {digits(factor * row.bound)}"
+    elif value.resolved:
+        shown = digits(factor * value.value)
+        interval = span(factor * value.low, factor * value.high)
+    return {
+        f"{quantity} ({unit})": shown,
+        f"interval of {quantity}": interval,
+        f"methods on {quantity}": agreement_in_words(row, quantity),
+    }
 
 
 def span(low: float, high: float) -> str:
@@ -106,29 +106,32 @@ def reason_table(
     k and c share a row if they share the reason. The share of time in contact shows whether there
     was a support to see.
     """
-    places = ("supports", "direction") if several else ()
-    columns = ("gap (mm)", *places, f"loads ({unit} RMS)", "value", "why", "time in contact (%)")
     rows = []
-    for place, group in groupby(answers, key=lambda row: row.place):
+    for _, group in groupby(answers, key=lambda row: row.place):
         curve = list(group)
         for quantity in ("k", "c"):
             for kind, run in groupby(curve, key=lambda row: _kind(row, quantity)):
-                alike = list(run)
-                loads = [row.load_rms_N for row in alike]
-                if kind is None:
-                    continue
-                reasons = [getattr(row, quantity).reason for row in alike]
-                rows.append(
-                    (
-                        digits(1e3 * place[0]),
-                        *(place[1:] if several else ()),
-                        digits(loads[0]) if len(loads) == 1 else span(loads[0], loads[-1]),
-                        f"{kind[0]}: {kind[1]}",
-                        _reason(reasons, loads[0], unit),
-                        _touching(statistics, alike),
-                    )
-                )
-    return Table(columns, rows)
+                if kind is not None:
+                    rows.append(_reason_row(statistics, quantity, kind, list(run), unit))
+    return table_of(rows, () if several else PLACE)
+
+
+def _reason_row(
+    statistics: StudyStatistics,
+    quantity: str,
+    kind: tuple[str, str, str],
+    alike: Sequence[Answer],
+    unit: str,
+) -> dict[str, str]:
+    """Return the row of a run of loads with the same reason."""
+    first, last = digits(alike[0].load_rms_N), digits(alike[-1].load_rms_N)
+    return {
+        **_place_cells(alike[0]),
+        f"loads ({unit} RMS)": first if len(alike) == 1 else f"{first} to {last}",
+        "value": f"{kind[0]}: {kind[1]}",
+        "why": _reason([getattr(row, quantity).reason for row in alike], first, unit),
+        "time in contact (%)": _touching(statistics, alike),
+    }
 
 
 def _kind(row: Answer, quantity: str) -> tuple[str, str, str] | None:
@@ -144,67 +147,47 @@ def _kind(row: Answer, quantity: str) -> tuple[str, str, str] | None:
     return name, agreement_in_words(row, quantity), NUMBERS.sub("#", value.reason)
 
 
-def _reason(reasons: Sequence[str], load: float, unit: str) -> str:
+def _reason(reasons: Sequence[str], load: str, unit: str) -> str:
     """Return the reason of a run of loads; that of its first load if the numbers change."""
     if len(set(reasons)) == 1:
         return reasons[0]
-    return f"{reasons[0]} (at {digits(load)} {unit} RMS, likewise at the others)"
+    return f"{reasons[0]} (at {load} {unit} RMS, likewise at the others)"
 
 
 def _touching(statistics: StudyStatistics, alike: Sequence[Answer]) -> str:
     """Return the range of the time in contact: of the answers, or of all supports without it."""
-    values = [
-        100.0 * row.touching
-        if math.isfinite(row.touching)
-        else 100.0
-        * statistics.spread("contact_fraction", row.gap_m, row.load_rms_N, SEVERAL).median
-        for row in alike
-    ]
-    finite = [value for value in values if math.isfinite(value)]
+    values = []
+    for row in alike:
+        case = row.gap_m, row.load_rms_N, SEVERAL
+        known = math.isfinite(row.touching)
+        values.append(
+            row.touching if known else statistics.spread("contact_fraction", *case).median
+        )
+    finite = [100.0 * value for value in values if math.isfinite(value)]
     if not finite:
         return "-"
     low, high = digits(min(finite)), digits(max(finite))
     return low if low == high else f"{low} to {high}"
 
 
-def contact_table(
-    statistics: StudyStatistics, gap_m: float, loads: Sequence[float], unit: str
+def place_table(
+    statistics: StudyStatistics, kind: str, gap_m: float, loads: Sequence[float], unit: str
 ) -> Table:
-    """Return contact and wear of one gap, a row per load and support, medians over seeds."""
-    return _of_places(statistics, gap_m, loads, unit, SUPPORT_COLUMNS)
+    """Return contact and wear, or power and work, of one gap, a row per load and place.
 
-
-def element_table(
-    statistics: StudyStatistics, gap_m: float, loads: Sequence[float], unit: str
-) -> Table:
-    """Return power and work of the local elements, a row per load and element, medians."""
-    return _of_places(statistics, gap_m, loads, unit, ELEMENT_COLUMNS)
-
-
-def _of_places(
-    statistics: StudyStatistics,
-    gap_m: float,
-    loads: Sequence[float],
-    unit: str,
-    columns: Mapping[str, tuple[str, float]],
-) -> Table:
-    """Return the quantities of supports or elements that were recorded."""
-    present = {name: about for name, about in columns.items() if name in statistics.quantities}
-    supports = columns is SUPPORT_COLUMNS
-    rows = [
-        (
-            digits(load),
-            place,
-            *(
-                digits(factor * statistics.spread(quantity, gap_m, load, place).median)
-                for quantity, (_, factor) in present.items()
-            ),
-        )
+    kind: of the places, support or element. unit: of the load. The values are medians over seeds
+    of the quantities that were recorded.
+    """
+    present = {name: of for name, of in PLACES[kind].items() if name in statistics.quantities}
+    return table_of(
+        {f"load ({unit} RMS)": digits(load), kind: place}
+        | {
+            title: digits(factor * statistics.spread(quantity, gap_m, load, place).median)
+            for quantity, (title, factor) in present.items()
+        }
         for load in loads
-        for place in (statistics.supports if supports else statistics.elements)
-    ]
-    titles = [title for title, _ in present.values()]
-    return Table((f"load ({unit} RMS)", "support" if supports else "element", *titles), rows)
+        for place in (statistics.supports if kind == "support" else statistics.elements)
+    )
 
 
 def stress_table(statistics: StudyStatistics, loads: Sequence[float], unit: str) -> Table:
@@ -212,45 +195,32 @@ def stress_table(statistics: StudyStatistics, loads: Sequence[float], unit: str)
 
     The peak has its range over seeds.
     """
-    columns = (
-        "gap (mm)",
-        f"load ({unit} RMS)",
-        "RMS stress (MPa)",
-        "peak stress (MPa)",
-        "range over seeds",
-        "most stressed section",
-        "above the limit",
-    )
     flagged = set(statistics.flagged())
     rows = []
     for gap in statistics.gaps:
         for load in loads:
             rms, peak = (
-                _scaled(statistics.spread(quantity, gap, load, SEVERAL), 1e-6)
+                [1e-6 * value for value in statistics.spread(quantity, gap, load, SEVERAL)]
                 for quantity in ("stress_rms", "stress_peak")
             )
-            if not math.isfinite(peak.median):
+            if not math.isfinite(peak[0]):
                 continue
             worst = max(
                 statistics.sections,
                 key=lambda name: statistics.spread("stress_peak", gap, load, name).median,
             )
             rows.append(
-                (
-                    digits(1e3 * gap),
-                    digits(load),
-                    digits(rms.median),
-                    digits(peak.median),
-                    span(peak.low, peak.high),
-                    worst.replace("_", " "),
-                    "yes" if (gap, load) in flagged else "no",
-                )
+                {
+                    "gap (mm)": digits(1e3 * gap),
+                    f"load ({unit} RMS)": digits(load),
+                    "RMS stress (MPa)": digits(rms[0]),
+                    "peak stress (MPa)": digits(peak[0]),
+                    "range over seeds": span(*peak[1:]),
+                    "most stressed section": worst.replace("_", " "),
+                    "above the limit": "yes" if (gap, load) in flagged else "no",
+                }
             )
-    return Table(columns, rows)
-
-
-def _scaled(spread: Spread, factor: float) -> Spread:
-    return Spread(*(factor * value for value in spread))
+    return table_of(rows)
 
 
 def energy_table(statistics: StudyStatistics, limits: Mapping[str, float], unit: str) -> Table:
@@ -262,45 +232,30 @@ def energy_table(statistics: StudyStatistics, limits: Mapping[str, float], unit:
             continue
         limit = limits.get(quantity)
         rows.append(
-            (
-                RESIDUAL_WORDS[quantity],
-                f"{value:.2g}",
-                "-" if limit is None else f"{limit:.2g}",
-                "-" if limit is None else "yes" if value <= limit else "no",
-                digits(load),
-                digits(1e3 * gap),
-            )
+            {
+                "energy balance": RESIDUAL_WORDS[quantity],
+                "worst residual / input work (-)": f"{value:.2g}",
+                "accepted (-)": "-" if limit is None else f"{limit:.2g}",
+                "within": "-" if limit is None else "yes" if value <= limit else "no",
+                f"at load ({unit} RMS)": digits(load),
+                "at gap (mm)": digits(1e3 * gap),
+            }
         )
-    columns = (
-        "energy balance",
-        "worst residual / input work (-)",
-        "accepted (-)",
-        "within",
-        f"at load ({unit} RMS)",
-        "at gap (mm)",
-    )
-    return Table(columns, rows)
+    return table_of(rows)
 
 
 def timing_table(rows: Sequence[dict]) -> Table:
-    """Return the time of the jobs by rule.
-
-    rows: of study.timing.study_timing.
-    """
-    columns = ("rule", "jobs", "wall time (s)", "CPU time (s)", "largest memory (MB)")
-    chosen = [row for row in rows if row["part"] == ""]
-    return Table(
-        columns,
-        [
-            (
-                str(row["rule"]).replace("_", " "),
-                str(row["jobs"]),
-                f"{row['wall_s']:.1f}",
-                f"{row['cpu_s']:.1f}",
-                f"{row['max_rss_MB']:.0f}",
-            )
-            for row in chosen
-        ],
+    """Return the time of the jobs by rule; rows: of study.timing.study_timing."""
+    return table_of(
+        {
+            "rule": str(row["rule"]).replace("_", " "),
+            "jobs": row["jobs"],
+            "wall time (s)": f"{row['wall_s']:.1f}",
+            "CPU time (s)": f"{row['cpu_s']:.1f}",
+            "largest memory (MB)": f"{row['max_rss_MB']:.0f}",
+        }
+        for row in rows
+        if row["part"] == ""
     )
 
 

@@ -10,7 +10,7 @@ from vibroimpact.integration.energy_limit import ENERGY_LIMIT
 from vibroimpact.study.method_agreement import AGREEMENT
 from vibroimpact.study.reasons import agreement_sentence
 
-from .equivalent_answer import ALL_SUPPORTS, COMPARED, Answer, Value
+from .equivalent_answer import ALL_SUPPORTS, COMPARED, Answer, Value, places_of
 from .number_text import digits
 from .study_statistics import StudyStatistics
 
@@ -47,16 +47,12 @@ def run_sentence(config: Any, statistics: StudyStatistics) -> str:
     held = f" with {supports} gap support{'s' * (supports != 1)}" if supports else ""
     loads, gaps, seeds = statistics.loads, statistics.gaps, config.grid.seeds
     own = [support.gap_m for support in config.supports]
-    gaps_in_words = (
-        f"gaps of their own ({_range(sorted(1e3 * gap for gap in own))} mm)"
-        if supports and has_own_gaps(config)
-        else f"{_count(gaps, 'gap')} (radial, {_listed([digits(1e3 * gap) for gap in gaps])} mm)"
-    )
-    kinds = (
-        [gaps_in_words, _count(range(seeds), "seed")]
-        if supports
-        else [_count(range(seeds), "seed")]
-    )
+    kinds = [_count(range(seeds), "seed")]
+    if supports and has_own_gaps(config):
+        kinds.insert(0, f"gaps of their own ({_range(sorted(1e3 * gap for gap in own))} mm)")
+    elif supports:
+        listed = _listed([digits(1e3 * gap) for gap in gaps])
+        kinds.insert(0, f"{_count(gaps, 'gap')} (radial, {listed} mm)")
     return (
         f"{STRUCTURES.get(config.structure.kind, 'A structure')}{held} under"
         f" {_excitation(config.excitation)}: {_count(loads, 'load')}"
@@ -118,7 +114,7 @@ def headline(config: Any, answers: Sequence[Answer], unit: str = "") -> list[str
     for place in places[:MOST_PLACES]:
         rows = [row for row in answers if row.place == place]
         sentences.append(
-            f"{place_in_words(*place).capitalize()}: {_course(rows, 'k', scale, unit)};"
+            f"{_place_in_words(*place).capitalize()}: {_course(rows, 'k', scale, unit)};"
             f" {_course(rows, 'c', ('N s/m', 1.0), unit)}."
         )
     if len(places) > MOST_PLACES:
@@ -186,8 +182,7 @@ def answers_by_place(content: Any) -> list[tuple[int, int, float, str]]:
 
     The first two are positions of the controls, the load is in its unit. content: StudyContent.
     """
-    gaps = list(dict.fromkeys(row.gap_m for row in content.answers))
-    pairs = list(dict.fromkeys((row.group, row.direction) for row in content.answers))
+    gaps, pairs = places_of(content.answers)
     scale = stiffness_unit([row.k.value for row in content.answers])
     return [
         (
@@ -218,14 +213,9 @@ def answer_in_words(row: Answer, scale: tuple[str, float]) -> str:
     return text[:1].replace("n", "N") + text[1:] + "."  # but k stays k
 
 
-def place_in_words(gap_m: float, group: str, direction: str, several: bool | None = None) -> str:
-    """Return a gap, group of supports and direction in words.
-
-    several: whether the study has more than one group or direction; by default, whether the group
-    has a name of its own.
-    """
-    named = group != ALL_SUPPORTS if several is None else several
-    place = f", {group}, direction {direction}" if named else ""
+def _place_in_words(gap_m: float, group: str, direction: str) -> str:
+    """Return a gap, with group of supports and direction if the group has a name of its own."""
+    place = f", {group}, direction {direction}" if group != ALL_SUPPORTS else ""
     return f"gap {digits(1e3 * gap_m)} mm{place}"
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 # A number, an interval or none.
 NUMBER = re.compile(r"-|((< |over )?[-+]?\d[-+.e\d]*( to -?\d[-+.e\d]*)?( %)?)")
@@ -31,8 +31,11 @@ class Table(NamedTuple):
         return any(len(cell) > LONG_CELL for row in self.rows for cell in row)
 
 
-def table_of(rows: Iterable[Mapping[str, str]], left_out: Sequence[str] = ()) -> Table:
-    """Return the Table of rows {heading: cell}, all with the same headings, some left out."""
+def table_of(rows: Iterable[Mapping[str, Any]], left_out: Sequence[str] = ()) -> Table:
+    """Return the Table of rows {heading: cell}, all with the same headings, some left out.
+
+    Without rows it has no columns.
+    """
     rows = list(rows)
     columns = tuple(name for name in (rows[0] if rows else ()) if name not in left_out)
     return Table(columns, [tuple(str(row[name]) for name in columns) for row in rows])

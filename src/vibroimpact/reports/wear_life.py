@@ -11,7 +11,7 @@ from vibroimpact.study.wear.life import WearRow, deepest, wear_rank
 
 from .number_text import digits
 from .study_tables import span
-from .table import Table
+from .table import Table, table_of
 
 
 def wear_sentences(rows: Sequence[WearRow], config: Any, unit: str) -> list[str]:
@@ -32,33 +32,22 @@ def wear_sentences(rows: Sequence[WearRow], config: Any, unit: str) -> list[str]
 
 def wear_table(rows: Sequence[WearRow], gap_m: float, loads: Sequence[float], unit: str) -> Table:
     """Return the wear of one gap, a row per load, support and land, ranges over the laws."""
-    columns = (
-        f"load ({unit} RMS)",
-        "support",
-        "land",
-        "wear work rate (mW)",
-        "depth (µm)",
-        "of the wall (%)",
-        "years to the limit",
-    )
     chosen = [row for row in rows if row.gap_m == gap_m and row.load_rms_N in loads]
     cells = []
-    for (load, support, land), group in groupby(
-        chosen, key=lambda row: (row.load_rms_N, row.support, row.land)
-    ):
+    for _, group in groupby(chosen, key=lambda row: (row.load_rms_N, row.support, row.land)):
         own = list(group)
         cells.append(
-            (
-                digits(load),
-                support,
-                str(land),
-                digits(1e3 * own[0].work_rate_W),
-                _range(own, "depth_m", 1e6),
-                _range(own, "wall_share", 100.0),
-                _range(own, "years_to_limit", 1.0),
-            )
+            {
+                f"load ({unit} RMS)": digits(own[0].load_rms_N),
+                "support": own[0].support,
+                "land": own[0].land,
+                "wear work rate (mW)": digits(1e3 * own[0].work_rate_W),
+                "depth (µm)": _range(own, "depth_m", 1e6),
+                "of the wall (%)": _range(own, "wall_share", 100.0),
+                "years to the limit": _range(own, "years_to_limit", 1.0),
+            }
         )
-    return Table(columns, cells)
+    return table_of(cells)
 
 
 def _range(rows: Sequence[WearRow], name: str, factor: float) -> str:

@@ -19,9 +19,9 @@ def make(given: Any, made: Any, params: Any) -> None:
     rows = read_table(given.table)
     records = checks.records_shown(given.records, read_case)
     plots = [
-        *equivalent.figure_13_equivalent_support(config, model, rows),
-        *equivalent.collapse(config, model, rows),
-        *checks.energy_balance(config, records),
-        *checks.contact_statistics(config, model, records),
+        equivalent.figure_13_equivalent_support(config, model, rows),
+        equivalent.collapse(config, model, rows),
+        checks.energy_balance(config, records),
+        checks.contact_statistics(config, model, records),
     ]
     save_plots(plots, Path(made.figures[0]).parent)

@@ -21,10 +21,10 @@ def make(given: Any, made: Any, params: Any) -> None:
     curves = cases_of_gap(given.curves, config, read_case)
     spectra = cases_of_gap(given.spectra, config, read_case)
     plots = [
-        *poles.figure_09_poles(config, model, curves, spectra, rows),
-        *stabilisation.figure_09_stabilisation(config, curves, spectra, rows),
-        *shapes.figure_10_shapes(config, model, curves, rows),
-        *shapes.figure_11_singular_values(config, curves),
-        *broadband.figure_12_broadband(config, model, curves, spectra, rows),
+        poles.figure_09_poles(config, model, curves, spectra, rows),
+        stabilisation.figure_09_stabilisation(config, curves, spectra, rows),
+        shapes.figure_10_shapes(config, model, curves, rows),
+        shapes.figure_11_singular_values(config, curves),
+        broadband.figure_12_broadband(config, model, curves, spectra, rows),
     ]
     save_plots(plots, Path(made.figures[0]).parent)

@@ -17,10 +17,10 @@ def make(given: Any, made: Any, params: Any) -> None:
     config = StageSettings(params.config)
     structure = build_structure(config)
     plots = [
-        *tube.figure_01_layout(config, structure),
-        *tube.figure_02_free_modes(config, structure),
-        *contact.figure_03_contact_law(config, structure),
-        *contact.figure_04_first_frequency(config),
-        *basis.basis_quality(config, read_table(given.quality)),
+        tube.figure_01_layout(config, structure),
+        tube.figure_02_free_modes(config, structure),
+        contact.figure_03_contact_law(config, structure),
+        contact.figure_04_first_frequency(config),
+        basis.basis_quality(config, read_table(given.quality)),
     ]
     save_plots(plots, Path(made.figures[0]).parent)

@@ -20,10 +20,10 @@ def make(given: Any, made: Any, params: Any) -> None:
     spectra = psd_table.spectra_shown(config, given.spectra, read_case)
     responses = psd_table.gather(config, model, spectra)
     plots = [
-        *overlay.figure_05_overlay(config, model, responses, campaign),
-        *response.figure_06_levels(config, model, responses),
-        *response.figure_07_overlay_of_loads(config, model, responses),
-        *response.figure_08_load_and_stiffness(config, model, responses),
-        *response.in_plane_share(config, responses),
+        overlay.figure_05_overlay(config, model, responses, campaign),
+        response.figure_06_levels(config, model, responses),
+        response.figure_07_overlay_of_loads(config, model, responses),
+        response.figure_08_load_and_stiffness(config, model, responses),
+        response.in_plane_share(config, responses),
     ]
     save_plots(plots, Path(made.figures[0]).parent)

@@ -10,8 +10,8 @@ from vibroimpact.campaign.file import write_campaign
 from vibroimpact.campaign.importing.assemble import import_folder
 from vibroimpact.campaign.importing.report import write_report
 from vibroimpact.io.signal_files.signals import ImportProblem
-from vibroimpact.reports.figures.discrepancy.quicklook import quicklook
 from vibroimpact.reports.figures.drawing import save_plots
+from vibroimpact.reports.figures.quicklook import quicklook
 
 
 def make(given: Any, made: Any, params: Any) -> None:
@@ -24,4 +24,4 @@ def make(given: Any, made: Any, params: Any) -> None:
         sys.exit(str(problem))
     write_campaign(campaign, made.campaign)
     write_report(params.folder, campaign, rows, made)
-    save_plots(quicklook(campaign), Path(made.figure[0]).parent)
+    save_plots([quicklook(campaign)], Path(made.figure[0]).parent)

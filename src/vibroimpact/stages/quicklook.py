@@ -9,8 +9,8 @@ from typing import Any
 from vibroimpact.campaign.checks.file_checks import COLUMNS, check_file
 from vibroimpact.campaign.importing.report import checks_text
 from vibroimpact.io.records import write_table, write_text
-from vibroimpact.reports.figures.discrepancy.quicklook import quicklook
 from vibroimpact.reports.figures.drawing import save_plots
+from vibroimpact.reports.figures.quicklook import quicklook
 
 
 def make(given: Any, made: Any, params: Any) -> None:
@@ -23,4 +23,4 @@ def make(given: Any, made: Any, params: Any) -> None:
     print(checks_text(checks))
     write_table(checks, made.checks, COLUMNS)
     write_text(checks_text(checks), made.text)
-    save_plots(quicklook(campaign), Path(made.figure[0]).parent)
+    save_plots([quicklook(campaign)], Path(made.figure[0]).parent)

@@ -16,5 +16,5 @@ def make(given: Any, made: Any, params: Any) -> None:
     """given: benchmarks. made: table, figures. params: config, logs."""
     rows = study_timing(given.benchmarks, params.logs)
     write_table(rows, made.table)
-    plots = timing(StageSettings(params.config), rows)
-    save_plots(plots, Path(made.figures[0]).parent)
+    plot = timing(StageSettings(params.config), rows)
+    save_plots([plot], Path(made.figures[0]).parent)

@@ -34,17 +34,9 @@ def drawn(plot: Plot | Sheet) -> Sheet:
     if isinstance(plot, Sheet):
         return plot
     rows = [list(row) for row in plot.rows or [list(plot.panels)]]
-    sheet = Sheet(
-        plot.name,
-        plot.title,
-        plot.caption,
-        rows,
-        size=plot.size,
-        sharex="x" in plot.share,
-        sharey="y" in plot.share,
-        width_ratios=plot.widths,
-        height_ratios=plot.heights,
-    )
+    grid: dict[str, Any] = {"width_ratios": plot.widths, "height_ratios": plot.heights}
+    grid |= {f"share{letter}": letter in plot.share for letter in "xy"}
+    sheet = Sheet(plot.name, plot.title, plot.caption, rows, plot.size, **grid)
     for key, panel in plot.panels.items():
         _draw_panel(sheet, sheet.axes[key], panel)
     _label_outside(sheet, rows, plot.share)
@@ -151,9 +143,7 @@ def _style(item: Look) -> dict[str, Any]:
 
 def _series(sheet: Sheet, axes: Axes, panel: Panel, item: Series) -> None:
     y_axis = panel.right if item.right and panel.right is not None else panel.y
-    x = (item.x_column or panel.x.column, item.x)
-    y = (item.y_column or y_axis.column, item.y)
-    tags = dict(item.tags)
+    x, y, tags = (panel.x.column, item.x), (y_axis.column, item.y), dict(item.tags)
     if not item.curve:
         axes.plot(shown(*x), shown(*y), **_style(item))
     elif item.low is None or item.high is None or item.band:
@@ -247,11 +237,7 @@ def _text(sheet: Sheet, axes: Axes, panel: Panel, item: Text) -> None:
 
 
 def _map(sheet: Sheet, axes: Axes, panel: Panel, item: Map) -> None:
-    norm = (LogNorm if item.log else Normalize)(item.low, item.high)
-    if not panel.y.names:
-        x, y, z = (panel.x.column, item.x), (panel.y.column, item.y), (item.z_column, item.z)
-        sheet.map(axes, x, y, z, item.curve, norm=norm)
-        return
+    """Draw a map; it is rasterised in PDF."""
     rows, columns = np.shape(item.z)
     table = {
         panel.y.column: np.repeat(item.y, columns),
@@ -259,9 +245,14 @@ def _map(sheet: Sheet, axes: Axes, panel: Panel, item: Map) -> None:
         item.z_column: np.ravel(item.z),
     }
     place = sheet.record(axes, item.curve, **table)
-    across = edges(item.x) if item.edges is None else item.edges
-    values = np.maximum(shown(item.z_column, item.z), item.low)
-    up = np.arange(rows + 1) - 0.5
+    across = edges(shown(panel.x.column, item.x)) if item.edges is None else item.edges
+    values, up = shown(item.z_column, item.z), np.arange(rows + 1) - 0.5
+    if panel.y.names:
+        values = np.maximum(values, item.low)
+    else:
+        up = np.exp(edges(np.log(shown(panel.y.column, item.y))))
+        axes.grid(False)
+    norm = (LogNorm if item.log else Normalize)(item.low, item.high)
     axes.pcolormesh(across, up, values, norm=norm, rasterized=True, gid=place)
 
 
@@ -292,9 +283,10 @@ def _colour_bar(sheet: Sheet, bar: ColourBar) -> None:
     norm = (LogNorm if bar.log else Normalize)(bar.low, bar.high)
     colours = ScalarMappable(norm, ORDERED if bar.curves else matplotlib.colormaps["viridis"])
     axes = [sheet.axes[name] for name in bar.panels or sheet.axes]
-    if not bar.panels:
-        sheet.colour_bar(colours, axes, bar.column, extend=bar.ends)
-        return
-    drawn = sheet.colour_bar(colours, axes, bar.column, location="bottom", aspect=14)
-    tidy_log_axis(drawn.ax.xaxis)
-    drawn.ax.tick_params(labelsize=8)
+    place: dict[str, Any] = {"extend": bar.ends}
+    if bar.panels:
+        place = {"location": "bottom", "aspect": 14}
+    drawn = sheet.figure.colorbar(colours, ax=axes, pad=0.02, label=label_of(bar.column), **place)
+    if bar.panels:
+        tidy_log_axis(drawn.ax.xaxis)
+        drawn.ax.tick_params(labelsize=8)

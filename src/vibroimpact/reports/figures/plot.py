@@ -69,7 +69,6 @@ class Series(Look):
     curve: its name in the CSV; an empty one is not in the CSV.
     low, high: (point,) of a range about y, None for none.
     band: whether the range is a band; bars else.
-    x_column, y_column: in the place of those of the axes.
     right: whether it belongs to the axis on the right.
     hover: text of each point under the pointer, on a page.
     moving: y in quadrature, of a motion whose part in phase is y; a page can play it.
@@ -82,8 +81,6 @@ class Series(Look):
     low: ArrayLike | None = None
     high: ArrayLike | None = None
     band: bool = False
-    x_column: str = ""
-    y_column: str = ""
     right: bool = False
     hover: Sequence[str] = ()
     moving: ArrayLike | None = None
@@ -270,6 +267,12 @@ class Plot:
     widths: Sequence[float] | None = None
     heights: Sequence[float] | None = None
     colour_bars: Sequence[ColourBar] = ()
+
+
+def in_rows(panels: Sequence[str], across: int) -> list[list[str]]:
+    """Return the names of panels in rows of so many, the last one filled with gaps."""
+    rows = [list(panels[first : first + across]) for first in range(0, len(panels), across)]
+    return [row + ["."] * (across - len(row)) for row in rows]
 
 
 def extent(values: ArrayLike, log: bool = False, margin: float = 0.05) -> tuple[float, float]:

@@ -12,8 +12,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
-from matplotlib.collections import QuadMesh
-from matplotlib.colorbar import Colorbar
 from matplotlib.container import ErrorbarContainer
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -98,14 +96,8 @@ class Sheet:
         """
         (x_column, x_values), (y_column, y_values) = x, y
         if low is not None and high is not None:
-            axes.fill_between(
-                shown(x_column, x_values),
-                shown(y_column, low),
-                shown(y_column, high),
-                color=style.get("color"),
-                alpha=0.18,
-                linewidth=0,
-            )
+            band = shown(x_column, x_values), shown(y_column, low), shown(y_column, high)
+            axes.fill_between(*band, color=style.get("color"), alpha=0.18, linewidth=0)
             tags = {**(tags or {}), f"{y_column}_low": low, f"{y_column}_high": high}
         place = self.record(axes, curve, **(tags or {}), **{x_column: x_values, y_column: y_values})
         (line,) = axes.plot(
@@ -127,17 +119,9 @@ class Sheet:
     ) -> ErrorbarContainer:
         """Draw points with bars from low to high, (point,) each, in SI; return the container."""
         (x_column, x_values), (y_column, y_values) = x, y
-        place = self.record(
-            axes,
-            curve,
-            **(tags or {}),
-            **{
-                x_column: x_values,
-                y_column: y_values,
-                f"{y_column}_low": low,
-                f"{y_column}_high": high,
-            },
-        )
+        ends = {f"{y_column}_low": low, f"{y_column}_high": high}
+        values = {x_column: x_values, y_column: y_values, **ends}
+        place = self.record(axes, curve, **(tags or {}), **values)
         middle = shown(y_column, y_values)
         spread = np.array([middle - shown(y_column, low), shown(y_column, high) - middle])
         self._label(axes, x_column, y_column)
@@ -164,33 +148,6 @@ class Sheet:
         place = float(shown(column, value))
         return axes.axvline(place, **style) if vertical else axes.axhline(place, **style)
 
-    def map(
-        self, axes: Axes, x: Column, y: Column, z: Column, curve: str, **style: Any
-    ) -> QuadMesh:
-        """Draw z (y, x) as colours over x and y; return the mesh.
-
-        A logarithmic y has even steps. The mesh is rasterised in PDF.
-        """
-        (x_column, x_values), (y_column, y_values), (z_column, z_values) = x, y, z
-        grid = np.meshgrid(x_values, y_values)
-        place = self.record(
-            axes,
-            curve,
-            **{y_column: grid[1].ravel(), x_column: grid[0].ravel(), z_column: np.ravel(z_values)},
-        )
-        mesh = axes.pcolormesh(
-            edges(shown(x_column, x_values)),
-            np.exp(edges(np.log(shown(y_column, y_values)))),
-            shown(z_column, z_values),
-            rasterized=True,
-            gid=place,
-            **style,
-        )
-        axes.set_yscale("log")
-        axes.grid(False)
-        self._label(axes, x_column, y_column)
-        return mesh
-
     def note(self, axes: Axes, text: str, x_column: str, y_column: str) -> None:
         """Write into empty axes why they are empty, and label them."""
         lines = textwrap.fill(text, NOTE_WIDTH)
@@ -202,12 +159,6 @@ class Sheet:
         if axes.get_legend_handles_labels()[1]:
             axes.legend(**style)
 
-    def colour_bar(self, mappable: Any, axes: Any, column: str, **style: Any) -> Colorbar:
-        """Add a colour bar for a column next to axes (one or several)."""
-        bar = self.figure.colorbar(mappable, ax=axes, pad=0.02, **style)
-        bar.set_label(label_of(column))
-        return bar
-
     def save(self, folder: str | Path) -> None:
         """Write name.png, name.pdf, name.csv and the caption as name.txt into a folder.
 
@@ -218,24 +169,15 @@ class Sheet:
         # The canvases are called directly: savefig would draw each file twice, and place the axes
         # again for the second one.
         self.figure.set_dpi(PNG_DPI)
-        self._write(
-            folder, "png", FigureCanvasAgg(self.figure).print_png, metadata={"Software": None}
-        )
+        with whole_file(folder / f"{self.name}.png") as file:
+            FigureCanvasAgg(self.figure).print_png(file, metadata={"Software": None})
         self.figure.set_layout_engine("none")
-        self._write(
-            folder,
-            "pdf",
-            FigureCanvasPdf(self.figure).print_pdf,
-            metadata={"CreationDate": None, "Title": self.name},
-        )
+        with whole_file(folder / f"{self.name}.pdf") as file:
+            about = {"CreationDate": None, "Title": self.name}
+            FigureCanvasPdf(self.figure).print_pdf(file, metadata=about)
         columns = self.columns()
         write_cells(columns, self.cells(columns), folder / f"{self.name}.csv")
         write_text(self.caption + "\n", folder / f"{self.name}.txt")
-
-    def _write(self, folder, suffix, write, **options):
-        """Write one file, whole or not at all."""
-        with whole_file(folder / f"{self.name}.{suffix}") as temporary:
-            write(temporary, **options)
 
     def columns(self) -> list[str]:
         """Return the names of the table's columns."""
@@ -295,11 +237,8 @@ def rounded(values: ArrayLike) -> list:
         return array.tolist()
     array = array.astype(float)
     usable = np.isfinite(array) & (array != 0.0)
-    size = np.floor(np.log10(np.abs(array[usable])))
-    scale = 10.0 ** np.abs(DIGITS - 1 - size)
-    array[usable] = np.where(
-        size < DIGITS,
-        np.round(array[usable] * np.where(size < DIGITS, scale, 1.0)) / scale,
-        array[usable],
-    )
+    known: np.ndarray = array[usable]
+    size = np.floor(np.log10(np.abs(known)))
+    short, scale = size < DIGITS, 10.0 ** np.abs(DIGITS - 1 - size)
+    array[usable] = np.where(short, np.round(known * np.where(short, scale, 1.0)) / scale, known)
     return array.tolist()

@@ -18,6 +18,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 from numpy.typing import ArrayLike
 
+from vibroimpact.geometry.sections import outer_width
+
 from .columns import COLUMNS
 
 BLACK = "#000000"
@@ -92,15 +94,10 @@ def shown(column: str, values: ArrayLike) -> np.ndarray:
     return np.asarray(values, dtype=float) * COLUMNS[column][1]
 
 
-def ordered_norm(values: ArrayLike) -> LogNorm:
-    """Return the logarithmic colour scale of positive values, widened for a single value."""
-    low, high = float(np.min(values)), float(np.max(values))
-    return LogNorm(low, high) if low < high else LogNorm(0.9 * low, 1.1 * low)
-
-
 def ordered_colours(values: Sequence[float]) -> dict[float, str]:
     """Return {value: colour} of positive values, from dark to light by their logarithm."""
-    norm = ordered_norm(values)
+    low, high = float(np.min(values)), float(np.max(values))
+    norm = LogNorm(low, high) if low < high else LogNorm(0.9 * low, 1.1 * low)
     return {value: to_hex(ORDERED(float(norm(value)))) for value in values}
 
 
@@ -144,6 +141,7 @@ def tidy_log_axis(axis: Axis) -> None:
     axis.set_minor_locator(NullLocator())
 
 
-def gap_label(gap_m: float, diameter_m: float) -> str:
-    """Return e.g. '0.289 mm (1.3 % of D)'."""
-    return f"{gap_m * 1e3:.3g} mm ({gap_m / diameter_m * 100:.3g} % of D)"
+def gap_label(config: Any, gap_m: float) -> str:
+    """Return e.g. '0.289 mm (1.3 % of D)', D the outer width of the tube of a configuration."""
+    share = gap_m / outer_width(config.structure.section)
+    return f"{gap_m * 1e3:.3g} mm ({share * 100:.3g} % of D)"

@@ -87,8 +87,5 @@ def _errors(evidence, states, channels):
         drawn, texts = np.minimum(np.nan_to_num(values), LARGEST), [*map(percent, values)]
         items.append(Bars(name, at, drawn, tags, texts=texts, **look))
     highest = 1.12 * max(float(np.max(item.values)) for item in items)
-    return Panel(
-        Axis("free_error", False, 0.0, highest),
-        Axis("channel", names=names[channels].tolist()),
-        items,
-    )
+    across, down = Axis("free_error", False, 0.0, highest), names[channels].tolist()
+    return Panel(across, Axis("channel", names=down), items)

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.diagnosis.law import SEEN
-from vibroimpact.reports.figures.plot import Axis, Bars, Mark, Panel, Plot, Series
+from vibroimpact.reports.figures.plot import Axis, Bars, Mark, Panel, Plot, Series, in_rows
 from vibroimpact.reports.figures.sheet import WIDTH_IN
 from vibroimpact.reports.figures.style import BLACK, GREY, PALE
 
@@ -29,13 +29,13 @@ CAPTION = (
     " the motion there, both in the band of the comparison; their scatter where nothing touches"
     " says how well the sensors tell a force. Lines: the median force of the model's own law in a"
     " run that is held to the sensors. Per cent: error of the model's force over the demanded"
-    " force, instant by instant. {panels}{static}{unseen}"
+    " force, instant by instant. {panels}A static part of motion or force is not measured and is"
+    " left out of both.{unseen}"
 )
 ORBIT = (
     "Panels with two motions: where the structure is while a force acts (demanded: black; model: in"
     " its colour) and while none does (grey). "
 )
-STATIC = "A static part of motion or force is not measured and is left out of both."
 
 
 def law_figure(evidence: xr.Dataset) -> Plot:
@@ -51,7 +51,8 @@ def law_figure(evidence: xr.Dataset) -> Plot:
     words = ("model as given", "completed")
     title = f"Demanded forces: error of {before_and_after(errors, words)}"
     rows = _rows(evidence, panels)
-    about = CAPTION.format(panels=ORBIT if _has_orbit(panels) else "", static=STATIC, unseen=unseen)
+    orbit = any(len(places) == 2 for places in panels.values())
+    about = CAPTION.format(panels=ORBIT if orbit else "", unseen=unseen)
     return Plot(
         "diagnosis_law",
         title,
@@ -87,10 +88,8 @@ def telling_level(evidence: xr.Dataset) -> int:
     """Return the number of the level at which the completed model gains most in its forces at all
     places; the first, with the sharpest contact, unless another gains clearly more.
     """
-    levels = range(evidence.sizes["law_stretch"])
-    places = list(range(evidence.sizes["place"]))
-    gains = []
-    for level in levels:
+    places, gains = list(range(evidence.sizes["place"])), []
+    for level in range(evidence.sizes["law_stretch"]):
         own = evidence.isel(law_stretch=[level])
         before, after = (min(force_error(own, state, places), 2.0) for state in (0, 1))
         gains.append(before - after)
@@ -146,19 +145,10 @@ def _rows(evidence, panels):
     rows: dict[str, list[str]] = {}
     for key, places in panels.items():
         rows.setdefault(str(evidence["owner_name"].values[places[0]]), []).append(key)
+    if len(rows) == len(panels):
+        return in_rows(list(panels), min(ACROSS, len(panels)))
     across = max(map(len, rows.values()))
-    if across == 1:
-        keys = list(panels)
-        own = [keys[first : first + ACROSS] for first in range(0, len(keys), ACROSS)]
-    else:
-        own = list(rows.values())
-    across = max(map(len, own))
-    return [[*row, *["."] * (across - len(row))] for row in own]
-
-
-def _has_orbit(panels):
-    """Return whether any panel shows both directions of a support."""
-    return any(len(places) == 2 for places in panels.values())
+    return [filled for row in rows.values() for filled in in_rows(row, across)]
 
 
 def _law_panel(evidence, places, states):

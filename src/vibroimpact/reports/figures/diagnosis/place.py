@@ -15,8 +15,8 @@ from vibroimpact.geometry.centreline import build_centreline
 from vibroimpact.geometry.support_spans import support_middles
 from vibroimpact.reports.figures.labels import spread_labels
 from vibroimpact.reports.figures.sheet import WIDTH_IN, Sheet
-from vibroimpact.reports.figures.study.tube import view_axes
-from vibroimpact.reports.figures.style import BLACK, BLUE, GREY, ORANGE, PALE
+from vibroimpact.reports.figures.style import BLACK, BLUE, GREY, ORANGE
+from vibroimpact.reports.figures.view import THICK_LINE, View
 
 TUBES = ("u_tube", "path")
 LINE_POINTS = 300
@@ -131,74 +131,38 @@ def place_figure(config, data, effects):
         sheet.note(sheet.axes["main"], "no places are known", "x_m", "z_m")
         return sheet
     drawn = np.vstack([places.known(), places.tips(ARROW * size)])  # of a straight tube, the plane
-    view = view_axes(drawn)[:2]  # that its channels point in
-    across, up = np.ptp(drawn, axis=0)[list(view)]
+    view = View.of(drawn)  # that its channels point in
+    across, up = np.ptp(view.seen(drawn), axis=0)
     height = np.clip(AROUND_IN + WIDTH_IN * up / max(across, 1e-3 * size), LEAST_IN, MOST_IN)
     sheet = Sheet("diagnosis_place", title, f"{caption}.", size=(WIDTH_IN, float(height)))
     axes = sheet.axes["main"]
-    columns = tuple("xyz"[axis] + "_m" for axis in view)
-    _structure(sheet, axes, places, view, columns)
-    for role, colour, marker in (("channels", BLUE, "o"), ("forces", BLACK, "s")):
-        _directed(
-            sheet,
-            axes,
-            getattr(places, role),
-            places.directions,
-            (view, columns, size),
-            (role, colour, marker),
-        )
-    labels = [_marked(sheet, axes, places, effect, view, columns) for effect in effects]
+    _structure(sheet, axes, places, view)
+    for role, colour, marker in (("channel", BLUE, "o"), ("force", BLACK, "s")):
+        _directed(sheet, axes, places, (view, ARROW * size), (role, colour, marker))
+    labels = [_marked(sheet, axes, places, effect, view) for effect in effects]
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.2, 0.12)  # the bars of supports reach beyond the tube
     sheet.figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=4)
-    spread_labels(sheet.figure, [label for label in labels if label is not None])
+    spread_labels(sheet.figure, labels)
     return sheet
 
 
-def _structure(sheet, axes, places, view, columns):
+def _structure(sheet, axes, places, view):
     """Draw the tube, or the named points of another structure, and the supports."""
     if places.line is None and places.points:
         named = np.array([*places.points.values()])
-        sheet.line(
-            axes,
-            (columns[0], named[:, view[0]]),
-            (columns[1], named[:, view[1]]),
-            "named points",
-            color=GREY,
-            marker=".",
-            linestyle="none",
-            zorder=1,
-            label="named point",
-        )
+        dots = {"color": GREY, "marker": ".", "linestyle": "none", "zorder": 1}
+        sheet.line(axes, *view.columns(named), "named points", **dots, label="named point")
     if places.line is not None:
-        sheet.line(
-            axes,
-            (columns[0], places.line[:, view[0]]),
-            (columns[1], places.line[:, view[1]]),
-            "structure",
-            color=PALE,
-            linewidth=5,
-            solid_capstyle="butt",
-            zorder=1,
-        )
+        sheet.line(axes, *view.columns(places.line), "structure", **THICK_LINE)
+    bar = {"color": GREY, "markersize": 26, "markeredgewidth": 5, "linestyle": "none", "zorder": 2}
     for number, (name, place) in enumerate(places.supports.items()):
         angle = 0.0
         if places.line is not None:
-            along = _tangent(places.line, place)[list(view)]
+            along = view.seen(_tangent(places.line, place))
             angle = np.degrees(np.arctan2(along[1], along[0])) + 90.0
-        sheet.line(
-            axes,
-            (columns[0], place[[view[0]]]),
-            (columns[1], place[[view[1]]]),
-            f"support {name}",
-            color=GREY,
-            marker=(2, 0, angle - 90.0),
-            markersize=26,
-            markeredgewidth=5,
-            linestyle="none",
-            zorder=2,
-            label="support" if number == 0 else None,
-        )
+        bar |= {"marker": (2, 0, angle - 90.0), "label": "support" if number == 0 else None}
+        sheet.line(axes, *view.columns(place), f"support {name}", **bar)
 
 
 def _tangent(line, place):
@@ -207,60 +171,35 @@ def _tangent(line, place):
     return line[at + 1] - line[at - 1]
 
 
-def _directed(sheet, axes, named, directions, seen, look):
+def _directed(sheet, axes, places, seen, look):
     """Draw channels or forces with arrows along their directions, as far as these lie in the plane
-    that is seen.
+    that is seen; seen: (view, length of an arrow in m).
     """
-    (view, columns, size), (role, colour, marker) = seen, look
-    for number, (name, place) in enumerate(named.items()):
-        spot, way = place[list(view)], directions[name][list(view)] * ARROW * size
-        sheet.line(
-            axes,
-            (columns[0], spot[:1]),
-            (columns[1], spot[1:]),
-            name,
-            color=colour,
-            marker=marker,
-            markersize=5,
-            linestyle="none",
-            zorder=4,
-            label=role.removesuffix("s") if number == 0 else None,
-        )
-        if np.linalg.norm(way) > 0.1 * ARROW * size:
-            style = {"arrowstyle": "->", "color": colour, "linewidth": 1.0}
-            axes.annotate("", spot + way, spot, arrowprops=style, zorder=4)
+    (view, length), (role, colour, marker) = seen, look
+    spot = {"color": colour, "marker": marker, "markersize": 5, "linestyle": "none", "zorder": 4}
+    arrow = {"arrowstyle": "->", "color": colour, "linewidth": 1.0}
+    for number, (name, place) in enumerate(getattr(places, f"{role}s").items()):
+        sheet.line(axes, *view.columns(place), name, **spot, label=None if number else role)
+        at, way = view.seen(place), view.seen(places.directions[name]) * length
+        if np.linalg.norm(way) > 0.1 * length:
+            axes.annotate("", at + way, at, arrowprops=arrow, zorder=4)
 
 
-def _marked(sheet, axes, places, effect, view, columns):
-    """Mark the place of an effect; return its label, None if there is nothing to mark."""
+def _marked(sheet, axes, places, effect, view):
+    """Mark the place of an effect, all of the structure if it has none; return its label."""
     spots = places.of(effect)
-    whole = not spots
-    if whole:
+    style = {"marker": "o", "markersize": 18, "markerfacecolor": "none", "markeredgewidth": 2.5}
+    style |= {"linestyle": "none", "zorder": 5 if spots else 3}
+    if not spots and places.line is not None:
+        style = {"linewidth": 9, "alpha": 0.35, "zorder": 3}
+    if not spots:
         spots = [*places.channels.values()] if places.line is None else places.line
-    across, up = (np.array(spots)[:, axis] for axis in view)
-    style = {"linewidth": 9, "alpha": 0.35} if whole and places.line is not None else {}
-    sheet.line(
-        axes,
-        (columns[0], across),
-        (columns[1], up),
-        f"{effect.id} at {place_in_words(effect.location or 'all')}",
-        color=ORANGE,
-        zorder=3 if whole else 5,
-        **(
-            style
-            or {
-                "marker": "o",
-                "markersize": 18,
-                "markerfacecolor": "none",
-                "markeredgewidth": 2.5,
-                "linestyle": "none",
-            }
-        ),
-    )
-    top = int(np.argmax(up))
+    curve = f"{effect.id} at {place_in_words(effect.location or 'all')}"
+    sheet.line(axes, *view.columns(np.array(spots)), curve, color=ORANGE, **style)
+    seen = view.seen(spots)
     return axes.annotate(
         effects_in_words([effect.id]),
-        (across[top], up[top]),
+        seen[np.argmax(seen[:, 1])],
         xytext=(14, 12),
         textcoords="offset points",
         color=ORANGE,

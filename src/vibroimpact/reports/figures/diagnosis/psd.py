@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.diagnosis.verdict.content import Misfit, Verdict
-from vibroimpact.reports.figures.discrepancy.quicklook import PSD_COLUMNS
 from vibroimpact.reports.figures.plot import Axis, Panel, Plot, Series
+from vibroimpact.reports.figures.quicklook import PSD_COLUMNS
 from vibroimpact.reports.figures.sheet import WIDTH_IN
 from vibroimpact.reports.figures.style import BLACK
 

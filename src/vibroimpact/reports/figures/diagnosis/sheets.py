@@ -21,6 +21,7 @@ from .states import empty_plot
 
 REFUSED = "the campaign was refused"
 NO_PLACE = "the structure has no support and no local element"
+NO_SENSOR = "No sensor is left free"
 ALONE = "fewer than two sensors measure a motion, and nothing would be held"
 
 
@@ -34,22 +35,14 @@ def diagnosis_figures(
     content the campaign can not give says why, and has no table; evidence whose attribute left_out
     says so itself is believed.
     """
+    spectra = partial(psd_figure, verdict=verdict)
     return [
         place_figure(config, evidence, verdict.shown_effects()),
         _drawn("holding", holding_figure, evidence, "holding_force", "Holding force", REFUSED),
         _drawn("law", law_figure, evidence, "demanded_force", "The law at the supports", NO_PLACE),
         ranking_figure(verdict),
-        _drawn(
-            "free_sensor",
-            free_sensor_figure,
-            evidence,
-            "free_error",
-            "No sensor is left free",
-            ALONE,
-        ),
-        _drawn(
-            "psd", partial(psd_figure, verdict=verdict), psd, "psd", "Spectra of free runs", REFUSED
-        ),
+        _drawn("free_sensor", free_sensor_figure, evidence, "free_error", NO_SENSOR, ALONE),
+        _drawn("psd", spectra, psd, "psd", "Spectra of free runs", REFUSED),
     ]
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.identify.method_names import method_name
-from vibroimpact.reports.equivalent_answer import COMPARED, Answer, Value
+from vibroimpact.reports.equivalent_answer import COMPARED, Answer, Value, number_or_nan, places_of
 from vibroimpact.reports.figures.plot import Axis, Cells, Panel, Series, Span, extent
 from vibroimpact.reports.figures.study.equivalent import COLUMNS, PREDICTED, look_of
 from vibroimpact.reports.figures.style import GREY, ORANGE, PALE, RED
@@ -50,12 +50,6 @@ def equivalent_plots(
     plots = [_against_load(quantity, answers, summary, loads) for quantity in COLUMNS]
     plots.append(_ratios(answers, summary, loads))
     return [*plots, *(_agreement(quantity, answers, load_label) for quantity in COLUMNS)]
-
-
-def places_of(answers: Sequence[Answer]) -> tuple[list[float], list[tuple[str, str]]]:
-    """Return (gaps in m, (group, direction) pairs) in the order of the controls of the page."""
-    gaps = list(dict.fromkeys(row.gap_m for row in answers))
-    return gaps, list(dict.fromkeys((row.group, row.direction) for row in answers))
 
 
 def _against_load(quantity, answers, summary, loads):
@@ -159,7 +153,7 @@ def _method(quantity, method, rows):
         row
         for row in rows
         if row["method"] == method
-        and np.isfinite(_value(row[f"{quantity}_median"]))
+        and np.isfinite(number_or_nan(row[f"{quantity}_median"]))
         and (quantity != "k" or row["k_median"] > 0.0)
     ]
     if not chosen:
@@ -209,7 +203,8 @@ def _ratio(quantity, method, rows, chosen):
     """Return the ratio of one method in a list, empty without values."""
     centre = {row.load_rms_N: getattr(row, quantity).value for row in chosen}
     ratios = {
-        row["load_rms_N"]: _value(row[f"{quantity}_median"]) / centre.get(row["load_rms_N"], np.nan)
+        row["load_rms_N"]: number_or_nan(row[f"{quantity}_median"])
+        / centre.get(row["load_rms_N"], np.nan)
         for row in rows
         if row["method"] == method
     }
@@ -225,22 +220,15 @@ def _ratio(quantity, method, rows, chosen):
 def _agreement(quantity, answers, load_label):
     """Return the plot of the agreement by gap and load: one cell per case, with its reason."""
     gaps, pairs = places_of(answers)
-    frames = {}
+    down, frames = Axis("gap_m", names=[f"{gap * 1e3:.3g}" for gap in gaps]), {}
     for index, pair in enumerate(pairs):
-        chosen = {
-            (row.gap_m, row.load_rms_N): row
-            for row in answers
-            if (row.group, row.direction) == pair
-        }
+        own = [row for row in answers if (row.group, row.direction) == pair]
+        chosen = {(row.gap_m, row.load_rms_N): row for row in own}
         loads = sorted({load for _, load in chosen})
-        cells = _cells(
-            quantity, [[(gap, load, chosen.get((gap, load))) for load in loads] for gap in gaps]
-        )
-        frames[key_of(index)] = Panel(
-            Axis("load_rms_N", label=load_label, names=[f"{load:.3g}" for load in loads]),
-            Axis("gap_m", names=[f"{gap * 1e3:.3g}" for gap in gaps]),
-            [cells],
-        )
+        rows = [[(gap, load, chosen.get((gap, load))) for load in loads] for gap in gaps]
+        names = [f"{load:.3g}" for load in loads]
+        across = Axis("load_rms_N", label=load_label, names=names)
+        frames[key_of(index)] = Panel(across, down, [_cells(quantity, rows)])
     seen = {_kind(quantity, row) for row in answers}
     legend = ", ".join(
         f"{sign} {words}" for kind, (sign, _, words) in CELLS.items() if kind in seen
@@ -260,18 +248,16 @@ def _agreement(quantity, answers, load_label):
 
 def _cells(quantity, rows):
     """Return the Cells of rows of (gap, load, Answer or None)."""
+
+    def about(gap, load, cell):
+        return f"load {load:.3g}, gap {gap * 1e3:.3g} mm<br>{_reason(quantity, cell)}"
+
     kinds = [[_kind(quantity, cell) for _, _, cell in row] for row in rows]
     return Cells(
         [[list(CELLS).index(kind) for kind in row] for row in kinds],
         [colour for _, colour, _ in CELLS.values()],
         [[CELLS[kind][0] for kind in row] for row in kinds],
-        [
-            [
-                f"load {load:.3g}, gap {gap * 1e3:.3g} mm<br>{_reason(quantity, cell)}"
-                for gap, load, cell in row
-            ]
-            for row in rows
-        ],
+        [[about(*cell) for cell in row] for row in rows],
     )
 
 
@@ -290,7 +276,3 @@ def _reason(quantity: str, row: Answer | None) -> str:
     value = f"{quantity} = {cell.value:.3g} {UNITS[quantity]}, " if cell.resolved else ""
     words = cell.reason or agreement_in_words(row, quantity)
     return value + words
-
-
-def _value(value: Any) -> float:
-    return float(value) if isinstance(value, (int, float)) else np.nan

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from plotly.offline import get_plotlyjs
 
 from vibroimpact.reports.figures.plot import Axis, Bars, Cells, Look, Mark, Panel, Series, Span
 from vibroimpact.reports.figures.style import GREY, label_of, shown
@@ -32,6 +31,8 @@ DASHES = {"-": "solid", "--": "dash", ":": "dot", "-.": "dashdot"}
 GRID = "#E6E6E6"
 BAND = 0.18  # opacity
 PLAIN_DECADES = 4.0
+Place = tuple[float, float]  # gap in m, load
+Frames = Sequence[tuple[str, Place]]  # keys of frames and what they show
 EMPTY_WIDTH = 36  # characters of a line in a plot without traces, which a phone shows uncut
 SHARED_POINTS = 20  # from it on, x values that recur are written once
 
@@ -104,9 +105,18 @@ class PagePlot:
         }
 
 
-def plotly_library() -> str:
-    """Return the source text of plotly.js, which the page holds once."""
-    return get_plotlyjs()
+def shown_sections(sections: Mapping[str, Sequence[PagePlot]]) -> dict[str, list[PagePlot]]:
+    """Return the plots of each section in which something is drawn."""
+    return {name: [plot for plot in plots if plot.has_traces()] for name, plots in sections.items()}
+
+
+def frame_places(gaps: Sequence[float], loads: Sequence[float]) -> Frames:
+    """Return (key of the frame, (gap, load)) of every position of the controls."""
+    return [
+        (key_of(row, column), (gap, load))
+        for row, gap in enumerate(gaps)
+        for column, load in enumerate(loads)
+    ]
 
 
 def key_of(*indices: int) -> str:
@@ -201,8 +211,8 @@ def _bars(panel: Panel, item: Bars) -> dict[str, Any]:
     if not names:
         trace |= {"x": numbers(_in_unit(panel.x, item.places)), "width": item.thickness}
     if item.low is not None and item.high is not None:
-        ends = (_in_unit(panel.y, end) for end in (item.low, item.high))
-        trace["error_y"] = _range_bars(next(ends), values, next(ends))
+        low, high = _in_unit(panel.y, item.low), _in_unit(panel.y, item.high)
+        trace["error_y"] = _range_bars(low, values, high)
     if item.texts:
         trace |= {"text": list(item.texts), "textposition": "outside", "textangle": 0}
         trace |= {"constraintext": "none", "cliponaxis": False}
@@ -229,9 +239,8 @@ def _cells(panel: Panel, item: Cells) -> dict[str, Any]:
     }
 
 
-def _range_bars(low: ArrayLike, middle: ArrayLike, high: ArrayLike) -> dict[str, Any]:
+def _range_bars(low: np.ndarray, middle: np.ndarray, high: np.ndarray) -> dict[str, Any]:
     """Return error bars from low to high, values in the unit of the axis."""
-    low, middle, high = (np.asarray(values, dtype=float) for values in (low, middle, high))
     return {
         "type": "data",
         "symmetric": False,

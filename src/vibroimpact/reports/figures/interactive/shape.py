@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy as np
 
+from vibroimpact.identify.spectra.welch import complex_values
 from vibroimpact.reports.figures.plot import Axis, Bars, Panel, Series, Span
+from vibroimpact.reports.figures.study.cases_of_gap import paths_at
 from vibroimpact.reports.figures.study.shapes import linear_shape, support_places
 from vibroimpact.reports.figures.style import BLUE, GREY, PALE
 from vibroimpact.reports.study_statistics import StudyStatistics
-from vibroimpact.study.cases import case_from_id
 
-from .page_plot import PagePlot
+from .page_plot import Frames, PagePlot, Place
 
-Place = tuple[float, float]  # gap in m, load
 HALF_SUPPORT_m = 0.01  # of a support, as it is drawn
 
 
@@ -30,23 +30,20 @@ def shapes_of(
     paths: files of estimates named after their cases; read: function as records.read_record.
     """
     found: dict[Place, np.ndarray] = {}
-    for path in paths:
-        case = case_from_id(Path(path).stem)
-        place = case.gap_m, case.load_rms_N
-        if place not in places or place in found:
+    for place, path in paths_at(paths, places):
+        if place in found:
             continue
         dataset = read(path)
-        if "ods_re" not in dataset:  # no main peak, no shape
-            continue
-        shape = dataset["ods_re"].values + 1j * dataset["ods_im"].values
-        found[place] = shape / np.abs(shape).max()
+        if "ods_re" in dataset:  # no main peak, no shape
+            shape = complex_values(dataset, "ods")
+            found[place] = shape / np.abs(shape).max()
     return found
 
 
 def shape_plot(
     model: Any,
     shapes: dict[Place, np.ndarray],
-    places: Sequence[tuple[str, Place]],
+    places: Frames,
     stiffness: float,
     direction: str,
 ) -> PagePlot:
@@ -57,19 +54,17 @@ def shape_plot(
     stiffness: N/m of a support in full contact.
     direction: of the displacement, such as y.
     """
-    along = model.line_arc_length
-    limits = [
-        Series("linear", along, linear_shape(model, k), label=name, colour=GREY, line=line, width=1)
-        for name, k, line in (
-            ("linear, without contact", 0.0, "--"),
-            ("linear, in full contact", stiffness, "-"),
-        )
-    ]
+    along, limits = model.line_arc_length, []
+    for state, k, line in (("without", 0.0, "--"), ("in full", stiffness, "-")):
+        look: dict[str, Any] = {"colour": GREY, "line": line, "width": 1}
+        look["label"] = f"linear, {state} contact"
+        limits.append(Series("linear", along, linear_shape(model, k), **look))
     supports = [
         Span("x", place - HALF_SUPPORT_m, place + HALF_SUPPORT_m, PALE)
         for place in support_places(model)
     ]
     across = Axis("shape", False, -1.15, 1.15, f"Shape, {direction} (largest = 1)")
+    axes = _tube_axis(along), across
     return PagePlot(
         "shape",
         "Deflection shape along the tube",
@@ -80,9 +75,7 @@ def shape_plot(
             " where it passes through zero."
         ),
         {
-            key: Panel(
-                _tube_axis(along), across, [*supports, *limits, _moving(along, shapes[place])]
-            )
+            key: Panel(*axes, [*supports, *limits, _moving(along, shapes[place])])
             for key, place in places
             if place in shapes
         },
@@ -94,26 +87,13 @@ def shape_plot(
 
 def _moving(along: np.ndarray, shape: np.ndarray) -> Series:
     """Return the shape with its envelope; a page can play it."""
-    size = np.abs(shape)
-    return Series(
-        "with contact",
-        along,
-        shape.real,
-        low=-size,
-        high=size,
-        band=True,
-        moving=shape.imag,
-        label="with contact",
-        colour=BLUE,
-        marker="o",
-        size=2.5,
-        width=2.0,
-    )
+    size, name = np.abs(shape), "with contact"
+    motion: dict[str, Any] = {"low": -size, "high": size, "band": True, "moving": shape.imag}
+    look: dict[str, Any] = {"colour": BLUE, "marker": "o", "size": 2.5, "width": 2.0}
+    return Series(name, along, shape.real, **motion, label=name, **look)
 
 
-def contact_along_plot(
-    statistics: StudyStatistics, places: Sequence[tuple[str, Place]], model: Any
-) -> PagePlot:
+def contact_along_plot(statistics: StudyStatistics, places: Frames, model: Any) -> PagePlot:
     """Return the plot of the time in contact of each support, along the tube if there is one."""
     names = statistics.supports
     along = model.line_arc_length.size > 0 and len(names) == len(model.support_names)
@@ -127,13 +107,8 @@ def contact_along_plot(
         rows = [statistics.spread("contact_fraction", gap, load, name) for name in names]
         middle, low, high = np.array(rows, dtype=float).reshape(-1, 3).T
         if np.isfinite(middle).any():
-            look: dict[str, Any] = {
-                "colour": BLUE,
-                "label": "in contact",
-                "texts": names,
-                "thickness": width,
-            }
-            bars = Bars("contact", at, middle, {}, low, high, **look)
+            look: dict[str, Any] = {"colour": BLUE, "label": "in contact", "thickness": width}
+            bars = Bars("contact", at, middle, {}, low, high, texts=names, **look)
             frames[key] = Panel(axis, Axis("contact_fraction", False, 0.0, 1.12), [bars])
     return PagePlot(
         "contact_along",

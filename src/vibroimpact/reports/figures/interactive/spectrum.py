@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -10,16 +11,15 @@ import numpy as np
 
 from vibroimpact.identify.spectra.welch import psd_statistics, segment_spectra
 from vibroimpact.reports.figures.plot import Axis, Panel, Series
+from vibroimpact.reports.figures.study.cases_of_gap import paths_at
+from vibroimpact.reports.figures.study.psd_table import STATISTICS
 from vibroimpact.reports.figures.style import BLUE
-from vibroimpact.study.cases import case_from_id
 
-from .page_plot import PagePlot, key_of
+from .page_plot import Frames, PagePlot, Place
 
-STATISTICS = ("mean", "min", "max")
 SERIES = ("displacement",)
 MOST_DECADES = 10.0  # of the axis; below is round-off of a sine
 OUTSIDE = 1e-4  # share of the power that a band may leave out at each end
-Place = tuple[float, float]  # gap in m, load
 Band = tuple[float, float]
 BLOCKS = 700  # of the frequency axis
 COLUMN = "psd_m2_per_Hz"
@@ -36,25 +36,17 @@ def spectra_of_sensor(
     The mean is over segments and seeds, min and max over both.
     """
     names = [f"psd_displacement_{statistic}" for statistic in STATISTICS]
-    combine = {"mean": np.add, "min": np.minimum, "max": np.maximum}
     found: dict[Place, dict[str, np.ndarray]] = {}
-    counts: dict[Place, int] = {}
-    frequency = np.zeros(0)
-    for path in paths:
-        case = case_from_id(Path(path).stem)
-        place = case.gap_m, case.load_rms_N
-        if place not in places:
-            continue
+    counts, frequency = Counter[Place](), np.zeros(0)
+    for place, path in paths_at(paths, places):
         dataset = read(path, names)
         at = [str(name) for name in dataset["sensor"].values].index(sensor)
         frequency = dataset["frequency"].values
-        counts[place] = counts.get(place, 0) + 1
+        counts[place] += 1
         known = found.setdefault(place, {})
-        for statistic in STATISTICS:
+        for statistic, combine in STATISTICS.items():
             values = dataset[f"psd_displacement_{statistic}"].values[at].astype(float)
-            known[statistic] = (
-                combine[statistic](known[statistic], values) if statistic in known else values
-            )
+            known[statistic] = combine(known[statistic], values) if statistic in known else values
     for place, known in found.items():
         known["mean"] = known["mean"] / counts[place]
     return frequency, found
@@ -73,10 +65,8 @@ def spectra_of_series(
     settings: section of the configuration with segment_s, overlap and window.
     """
     first: dict[Place, str | Path] = {}
-    for path in paths:
-        case = case_from_id(Path(path).stem)
-        if (case.gap_m, case.load_rms_N) in places:
-            first.setdefault((case.gap_m, case.load_rms_N), path)
+    for place, path in paths_at(paths, places):
+        first.setdefault(place, path)
     if not first:
         return "", np.zeros(0), {}
     loudest = read(first[max(first, key=lambda place: place[1])], SERIES)
@@ -124,7 +114,7 @@ def blocks_of(frequency: np.ndarray, band_Hz: Band) -> np.ndarray:
 def spectrum_plot(
     frequency: np.ndarray,
     spectra: dict[Place, dict[str, np.ndarray]],
-    places: Sequence[tuple[str, Place]],
+    places: Frames,
     sensor: str,
     band_Hz: Band,
     over: str = "segments and seeds",
@@ -167,15 +157,6 @@ def spectrum_plot(
         wide=True,
         height=420,
     )
-
-
-def frame_places(gaps: Sequence[float], loads: Sequence[float]) -> list[tuple[str, Place]]:
-    """Return (key of the frame, (gap, load)) of every position of the controls."""
-    return [
-        (key_of(row, column), (gap, load))
-        for row, gap in enumerate(gaps)
-        for column, load in enumerate(loads)
-    ]
 
 
 def _levels(curves: dict[str, Series]) -> dict[str, Axis]:

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from vibroimpact.reports.figures.plot import Axis, Bars, Mark, Panel, Series
+from vibroimpact.reports.figures.plot import Axis, Bars, Item, Mark, Panel, Series
 from vibroimpact.reports.figures.study.checks import RESIDUALS, residual_items
 from vibroimpact.reports.figures.study.equivalent import look_of_gap
 from vibroimpact.reports.figures.style import BLACK, BLUE, RED
 from vibroimpact.reports.study_statistics import SEVERAL, StudyStatistics
 
-from .equivalent import load_axis
-from .page_plot import PagePlot, key_of
+from .page_plot import Frames, PagePlot, key_of
 
 MOST_CURVES = 12  # more supports are shown by the largest value of all
 # quantity -> (axis, title, sentences)
@@ -52,23 +51,20 @@ STRESSES = (("stress_rms", "RMS", BLUE, "o"), ("stress_peak", "peak", RED, "^"))
 LEAST_RESIDUAL = 1.0e-12  # of the input work: less is round-off
 
 
-def contact_plots(
-    statistics: StudyStatistics, gaps: Sequence[float], load_label: str, caveat: str
-) -> list[PagePlot]:
+def contact_plots(statistics: StudyStatistics, loads: Axis, caveat: str) -> list[PagePlot]:
     """Return the plots of contact, impacts, forces and wear against load, by gap.
 
-    gaps: m, in the order of the control. caveat: on the wear work rate, may be empty.
+    caveat: on the wear work rate, may be empty.
     """
     known = {name for name in AGAINST_LOAD if math.isfinite(statistics.largest(name)[0])}
     if not statistics.supports or not known:
         return []
-    loads = load_axis(load_label, statistics.loads)
     plots = []
     for name in [name for name in AGAINST_LOAD if name in known | {"force"}]:
         axis, title, caption = AGAINST_LOAD[name]
         frames = {
             key_of(at): Panel(loads, axis, _of_supports(statistics, gap, name))
-            for at, gap in enumerate(gaps)
+            for at, gap in enumerate(statistics.gaps)
         }
         more = f" {caveat}".rstrip() if name == "wear_work_rate" else ""
         empty = "No contact at any load of this gap."
@@ -103,11 +99,7 @@ def _curve(statistics, quantity, gap, place, log, **look: Any) -> list[Series]:
 
 
 def stress_plots(
-    statistics: StudyStatistics,
-    gaps: Sequence[float],
-    places: Sequence[tuple[str, tuple[float, float]]],
-    limit_Pa: float,
-    load_label: str,
+    statistics: StudyStatistics, loads: Axis, places: Frames, limit_Pa: float
 ) -> list[PagePlot]:
     """Return the plots of the largest stress against load and of the stress by section.
 
@@ -116,18 +108,14 @@ def stress_plots(
     """
     if not statistics.sections:
         return []
-    loads, axis = load_axis(load_label, statistics.loads), Axis("stress_Pa", True)
     limit = Mark("limit", "y", limit_Pa, label="limit", colour=BLACK, line="--", width=1.0)
     frames = {}
-    for at, gap in enumerate(gaps):
-        curves = [
-            item
-            for quantity, label, colour, marker in STRESSES
-            for item in _curve(
-                statistics, quantity, gap, SEVERAL, True, label=label, colour=colour, marker=marker
-            )
-        ]
-        frames[key_of(at)] = Panel(loads, axis, [*curves, limit])
+    for at, gap in enumerate(statistics.gaps):
+        items: list[Item] = []
+        for quantity, label, colour, marker in STRESSES:
+            look = {"label": label, "colour": colour, "marker": marker}
+            items += _curve(statistics, quantity, gap, SEVERAL, log=True, **look)
+        frames[key_of(at)] = Panel(loads, Axis("stress_Pa", True), [*items, limit])
     caption = (
         "RMS and largest bending stress of the most stressed section against load, median and range"
         " over seeds. A case whose peak passes the dashed limit is flagged; the model itself stays"
@@ -144,16 +132,10 @@ def _stress_by_section(statistics, places):
     sections = Axis("section", names=[name.replace("_", " ") for name in names])
     frames = {}
     for key, (gap, load) in places:
-        bars = [
-            Bars(
-                quantity,
-                range(len(names)),
-                [statistics.spread(quantity, gap, load, name).median for name in names],
-                label=label,
-                colour=colour,
-            )
-            for quantity, label, colour, _ in STRESSES
-        ]
+        bars = []
+        for quantity, label, colour, _ in STRESSES:
+            middle = [statistics.spread(quantity, gap, load, name).median for name in names]
+            bars.append(Bars(quantity, range(len(names)), middle, label=label, colour=colour))
         frames[key] = Panel(sections, Axis("stress_Pa"), bars)
     return PagePlot(
         "stress_sections",
@@ -168,10 +150,10 @@ def _stress_by_section(statistics, places):
     )
 
 
-def energy_plot(
-    statistics: StudyStatistics, limits: dict[str, float], load_label: str
-) -> PagePlot | None:
-    """Return the plot of the energy residuals of all gaps; None if they were not recorded.
+def energy_plots(
+    statistics: StudyStatistics, loads: Axis, limits: Mapping[str, float]
+) -> list[PagePlot]:
+    """Return the plot of the energy residuals of all gaps in a list, empty if none was recorded.
 
     limits: {quantity: largest accepted value}.
     """
@@ -184,21 +166,16 @@ def energy_plot(
         ]
         rows = [row for row in rows if row[1] >= LEAST_RESIDUAL]
         if rows:
-            loads, values, gaps = zip(*rows, strict=True)
-            found[quantity] = (loads, values, {"gap_m": gaps})
+            levels, values, gaps = zip(*rows, strict=True)
+            found[quantity] = (levels, values, {"gap_m": gaps})
     if not found:
-        return None
-    axes = load_axis(load_label, statistics.loads), Axis("residual", True)
-    return PagePlot(
-        "energy",
-        "Open energy balance, case by case",
-        (
-            "Energy that the simulation fails to account for, over the work of the drive: the worst"
-            " seed of every load and gap. Markers below the dashed line of their colour are within"
-            f" the error of the time step. Less than {LEAST_RESIDUAL:g}, as without contact,"
-            " is left out."
-        ),
-        {"": Panel(*axes, residual_items(found, limits))},
-        wide=True,
-        height=380,
+        return []
+    caption = (
+        "Energy that the simulation fails to account for, over the work of the drive: the worst"
+        " seed of every load and gap. Markers below the dashed line of their colour are within"
+        f" the error of the time step. Less than {LEAST_RESIDUAL:g}, as without contact,"
+        " is left out."
     )
+    title = "Open energy balance, case by case"
+    frames = {"": Panel(loads, Axis("residual", True), residual_items(found, limits))}
+    return [PagePlot("energy", title, caption, frames, wide=True, height=380)]

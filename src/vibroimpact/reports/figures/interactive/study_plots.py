@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
+from plotly.offline import get_plotlyjs
+
 from vibroimpact.identify.spectra.welch import driven_axis
 from vibroimpact.reports.centred_wear import centred_in
-from vibroimpact.reports.equivalent_answer import ALL_SUPPORTS, with_places
+from vibroimpact.reports.equivalent_answer import ALL_SUPPORTS, places_of, with_places
 from vibroimpact.reports.figures.study.linear_limits import contact_stiffness, shown_band
 from vibroimpact.reports.figures.study.psd_table import driven_sensor
 from vibroimpact.reports.study_content import StudyContent
@@ -15,17 +17,11 @@ from vibroimpact.reports.study_page import PagePlots
 from vibroimpact.reports.study_tables import spread_evenly
 from vibroimpact.reports.study_words import load_label
 
-from .equivalent import equivalent_plots, places_of
-from .page_plot import Control, PagePlot, plotly_library
+from .equivalent import equivalent_plots, load_axis
+from .page_plot import Control, PagePlot, frame_places, shown_sections
 from .shape import contact_along_plot, shape_plot, shapes_of
-from .spectrum import (
-    band_of,
-    frame_places,
-    spectra_of_sensor,
-    spectra_of_series,
-    spectrum_plot,
-)
-from .statistics import contact_plots, energy_plot, stress_plots
+from .spectrum import band_of, spectra_of_sensor, spectra_of_series, spectrum_plot
+from .statistics import contact_plots, energy_plots, stress_plots
 
 MOST_FRAMES = 144  # spectra on the page, gaps times loads: 20 kB each
 
@@ -64,26 +60,23 @@ def study_plots(content: StudyContent, files: StudyFiles) -> PagePlots:
     config, statistics = content.config, content.statistics
     gaps, loads = statistics.gaps, shown_loads(statistics.gaps, statistics.loads)
     title = load_label(config)
+    axis = load_axis(title, statistics.loads)
     frames = frame_places(gaps, loads)
-    contact = contact_plots(statistics, gaps, title, centred_in(config))
+    contact = contact_plots(statistics, axis, centred_in(config))
     respond = _response_plots if files.spectra else _response_of_series
     response = respond(content, files, frames)
     if contact:
         beside_shape = any(plot.name == "shape" for plot in response)
         along = contact_along_plot(statistics, frames, files.model)
         (response if beside_shape else contact).append(along)
-    energy = energy_plot(statistics, dict(content.limits), title)
     sections = {
         "answer": _answer_plots(content, files, title),
         "response": response,
         "contact": contact,
-        "stress": stress_plots(statistics, gaps, frames, config.record.stress_limit_Pa, title),
-        "energy": [energy] if energy is not None else [],
+        "stress": stress_plots(statistics, axis, frames, config.record.stress_limit_Pa),
+        "energy": energy_plots(statistics, axis, content.limits),
     }
-    drawn = {
-        name: [plot for plot in plots if plot.has_traces()] for name, plots in sections.items()
-    }
-    return PagePlots(drawn, _controls(content, gaps, loads), plotly_library())
+    return PagePlots(shown_sections(sections), _controls(content, gaps, loads), get_plotlyjs())
 
 
 def _controls(content: StudyContent, gaps: Sequence[float], loads: Sequence[float]):
@@ -112,8 +105,7 @@ def _response_of_series(content, files, frames):
     sensor, frequency, spectra = spectra_of_series(files.series, files.read, settings, places)
     if not spectra:
         return []
-    band = band_of(frequency, spectra)
-    over = "segments of the first seed"
+    band, over = band_of(frequency, spectra), "segments of the first seed"
     return [spectrum_plot(frequency, spectra, frames, sensor, band, over)]
 
 

@@ -49,7 +49,7 @@ def basis_quality(config, rows):
         axes = Axis("support_stiffness_N_per_m", True), Axis("relative_error", True)
         panels[panel] = Panel(*axes, items, title)
     title = "Reduced model: contribution of each family of vectors"
-    return [Plot("basis_quality", title, caption, panels, size=(9.6, 4.2), share="y", legend=4)]
+    return Plot("basis_quality", title, caption, panels, size=(9.6, 4.2), share="y", legend=4)
 
 
 def _errors(rows, vectors, **look):

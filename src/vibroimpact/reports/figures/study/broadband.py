@@ -5,14 +5,12 @@ from __future__ import annotations
 import numpy as np
 from scipy.signal import find_peaks
 
-from vibroimpact.geometry.sections import outer_width
-from vibroimpact.identify.linear.responses import psd_family
 from vibroimpact.reports.figures.plot import Axis, ColourBar, Panel, Plot, Series
 from vibroimpact.reports.figures.style import GREEN, gap_label, number, ordered_colours
 
 from .cases_of_gap import first_seed, transition_load
 from .linear_limits import contact_stiffness
-from .psd_table import driven_sensor, unit_force_psd
+from .psd_table import driven_sensor, inside, linear_psds
 
 RANGE_MEMBERS = 9
 # Of a comparison of peaks: bins that are averaged, least height of a peak over its valleys in ln of
@@ -28,7 +26,7 @@ def figure_12_broadband(config, model, curves, spectra, rows):
     sensor = driven_sensor(config, config.identification.broadband.point)
     caption = (
         f"PSD of displacement at {sensor}, gap"
-        f" {gap_label(next(iter(curves)).gap_m, outer_width(config.structure.section))}, first"
+        f" {gap_label(config, next(iter(curves)).gap_m)}, first"
         " seed: simulated with contact (black), and the linear tube whose bilateral support (k, c)"
         " correlates best with it over the band (green). Thin, coloured: linear tubes with other"
         " stiffnesses, no damping added, under the same force. Left: the load at which the main"
@@ -48,7 +46,7 @@ def figure_12_broadband(config, model, curves, spectra, rows):
         panels[f"{load:g} N"] = _panel(config, model, files, stiffness, found)
     title = "Spectrum with contact and of the best linear tube"
     bar = ColourBar("support_stiffness_N_per_m", stiffness[0], stiffness[-1], log=True, curves=True)
-    return [Plot("figure_12_broadband", title, caption, panels, size=(7.6, 4.6), colour_bars=[bar])]
+    return Plot("figure_12_broadband", title, caption, panels, size=(7.6, 4.6), colour_bars=[bar])
 
 
 def _values(found):
@@ -57,13 +55,9 @@ def _values(found):
         return "each support with its own k and c"
     if not found or not np.isfinite(found[0]["k_N_per_m"]):
         return "no k resolved"
-    found = found[0]
-    damping = (
-        f", c = {number(found['c_N_s_per_m'])} N s/m"
-        if np.isfinite(found["c_N_s_per_m"])
-        else ", c not resolved"
-    )
-    return f"k = {number(found['k_N_per_m'])} N/m{damping}"
+    k, c = found[0]["k_N_per_m"], found[0]["c_N_s_per_m"]
+    damping = f"c = {number(c)} N s/m" if np.isfinite(c) else "c not resolved"
+    return f"k = {number(k)} N/m, {damping}"
 
 
 def _panel(config, model, files, stiffness, found):
@@ -73,15 +67,12 @@ def _panel(config, model, files, stiffness, found):
     """
     fitted, spectrum = files
     sensor = driven_sensor(config, config.identification.broadband.point)
-    low, high = config.identification.broadband.band_Hz
+    band = config.identification.broadband.band_Hz
     load = float(spectrum.attrs["load_rms_N"])
-    frequency = spectrum["frequency"].values
-    inside = (frequency >= low) & (frequency <= high)
-    frequency = frequency[inside]
-    target = spectrum["psd_displacement_mean"].sel(sensor=sensor).values[inside].astype(float)
-    shape = model.sensor_shapes[:, model.sensor_names.index(sensor)]
-    members = psd_family(model, stiffness, [0.0], frequency, shape)[:, 0]
-    members = members * unit_force_psd(config, frequency) * load**2
+    kept = inside(spectrum["frequency"].values, band)
+    frequency = spectrum["frequency"].values[kept]
+    target = spectrum["psd_displacement_mean"].sel(sensor=sensor).values[kept].astype(float)
+    members = linear_psds(config, model, sensor, stiffness, frequency) * load**2
     colours = ordered_colours(stiffness)
     items = [
         Series("linear", frequency, psd, {"k_N_per_m": k}, colour=colours[k], width=0.6)
@@ -96,7 +87,7 @@ def _panel(config, model, files, stiffness, found):
         factor = peak_factor(np.interp(place, frequency, target), best)
         title += f"\npeaks within a factor of {factor:.1f}"
     levels = Axis("psd_m2_per_Hz", True, 0.05 * target.min(), 30.0 * target.max())
-    return Panel(Axis("frequency_Hz", False, low, high), levels, items, title, legend="lower left")
+    return Panel(Axis("frequency_Hz", False, *band), levels, items, title, legend="lower left")
 
 
 def peak_factor(target, best):

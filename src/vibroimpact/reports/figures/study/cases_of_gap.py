@@ -22,6 +22,14 @@ def paths_of_gap(paths, gap_m):
     return [path for path in paths if case_from_id(Path(path).stem).gap_m == gap_m]
 
 
+def paths_at(paths, places):
+    """Yield ((gap in m, load), path) of files named after cases at one of some (gap, load)."""
+    for path in paths:
+        case = case_from_id(Path(path).stem)
+        if (case.gap_m, case.load_rms_N) in places:
+            yield (case.gap_m, case.load_rms_N), path
+
+
 class CasesOnDemand(Mapping):
     """{Case: read(path)} of paths named after cases, ordered by case.
 

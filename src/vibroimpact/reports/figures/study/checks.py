@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.geometry.sections import outer_width
 from vibroimpact.integration.energy_limit import ENERGY_LIMIT
 from vibroimpact.reports.centred_wear import centred_sentence
 from vibroimpact.reports.figures.plot import Axis, Item, Mark, Panel, Plot, Series, Text
@@ -15,7 +14,7 @@ from vibroimpact.reports.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, 
 from vibroimpact.study.cases import case_from_id
 
 from .cases_of_gap import CasesOnDemand
-from .equivalent import look_of_gap
+from .equivalent import looks_of_gaps
 from .seed_scatter import over_seeds
 
 RESIDUALS = {
@@ -66,23 +65,15 @@ def residual_items(found, accepted) -> list[Item]:
     items: list[Item] = []
     for variable, (loads, values, tags) in found.items():
         name, colour, marker = RESIDUALS[variable]
-        look: dict[str, Any] = {
-            "label": name,
-            "colour": colour,
-            "marker": marker,
-            "line": "",
-            "size": 3.5,
-        }
+        look: dict[str, Any] = {"colour": colour, "marker": marker, "line": "", "size": 3.5}
         hover = [
             f"{value:.2g} of the input work<br>{load:.3g} RMS, gap {1e3 * gap:.3g} mm"
             for load, value, gap in zip(loads, values, tags["gap_m"], strict=True)
         ]
-        items.append(Series(variable, loads, values, tags, hover=hover, **look))
+        items.append(Series(variable, loads, values, tags, label=name, hover=hover, **look))
         if variable in accepted:
-            limit = accepted[variable]
-            items.append(
-                Mark(f"limit of {variable}", "y", limit, colour=colour, line="--", width=1.0)
-            )
+            curve, look = f"limit of {variable}", {"colour": colour, "line": "--", "width": 1.0}
+            items.append(Mark(curve, "y", accepted[variable], **look))
     return items
 
 
@@ -105,22 +96,15 @@ def energy_balance(config, records):
         f" {config.integration.steps_per_second:g} steps per second. Values below {FLOOR:g}, as"
         " the zeros without contact, are drawn there. Right: energies during the case of the"
         f" largest load ({case.load_rms_N:g} N, gap"
-        f" {gap_label(case.gap_m, outer_width(config.structure.section))}, seed {case.seed});"
+        f" {gap_label(config, case.gap_m)}, seed {case.seed});"
         " negative times are the start-up before the record."
     )
     loads = [key.load_rms_N for key in records]
-    tags = {
-        "gap_m": np.array([key.gap_m for key in records]),
-        "seed": np.array([key.seed for key in records]),
-    }
-    found = {
-        variable: (
-            loads,
-            np.maximum([float(dataset[variable]) for dataset in records.values()], FLOOR),
-            tags,
-        )
-        for variable in RESIDUALS
-    }
+    tags = {name: np.array([getattr(key, name) for key in records]) for name in ("gap_m", "seed")}
+    found = {}
+    for variable in RESIDUALS:
+        values = [float(dataset[variable]) for dataset in records.values()]
+        found[variable] = (loads, np.maximum(values, FLOOR), tags)
     residuals = Panel(
         Axis("load_rms_N", True),
         Axis("residual", True, 0.2 * FLOOR, 1.0e4),  # room for the legend
@@ -128,15 +112,9 @@ def energy_balance(config, records):
         f"residuals of {len(records)} cases",
         legend="upper left",
     )
-    return [
-        Plot(
-            "energy_balance",
-            "Energy balance of the simulations",
-            caption,
-            {"residuals": residuals, "energies": _energies(records[case], case)},
-            size=(7.6, 4.4),
-        )
-    ]
+    panels = {"residuals": residuals, "energies": _energies(records[case], case)}
+    title = "Energy balance of the simulations"
+    return Plot("energy_balance", title, caption, panels, size=(7.6, 4.4))
 
 
 def _energies(record, case):
@@ -170,12 +148,12 @@ def records_shown(paths, read):
     A file is read by read(path, names) when its case is used.
     """
     drawn = case_of_energies(CasesOnDemand(paths, None))
-    return CasesOnDemand(
-        paths,
-        lambda path: read(
-            path, (*VARIABLES, "energy") if case_from_id(Path(path).stem) == drawn else VARIABLES
-        ),
-    )
+
+    def read_one(path):
+        whole = case_from_id(Path(path).stem) == drawn
+        return read(path, (*VARIABLES, "energy") if whole else VARIABLES)
+
+    return CasesOnDemand(paths, read_one)
 
 
 def contact_statistics(config, model, records):
@@ -208,26 +186,16 @@ def contact_statistics(config, model, records):
         for panel, _, column, title in STATISTICS
     }
     names = list(panels)
-    return [
-        Plot(
-            "contact_statistics",
-            "Contact, wear and stress against load",
-            caption,
-            panels,
-            [names[:3], names[3:]],
-            (9.6, 6.0),
-            share="x",
-            legend=3,
-        )
-    ]
+    title, look = "Contact, wear and stress against load", {"share": "x", "legend": 3}
+    rows = [names[:3], names[3:]]
+    return Plot("contact_statistics", title, caption, panels, rows, (9.6, 6.0), **look)
 
 
 def _of_gaps(config, records, gaps, variable, column) -> list[Item]:
     """Return a statistic of all gaps; with the RMS of the forces goes their peak, hollow."""
     items: list[Item] = []
-    for index, gap in enumerate(gaps):
-        label = f"gap {gap_label(gap, outer_width(config.structure.section))}"
-        look = look_of_gap(index) | {"width": 0.9, "label": label}
+    for gap, look in looks_of_gaps(config, gaps):
+        look |= {"width": 0.9}
         for name, more in ((variable, {}), ("peak_force", {"line": ":", "hollow": True})):
             if name == variable or variable == "rms_force":
                 rows = _rows(records, gap, name, column)
@@ -245,14 +213,10 @@ def _rows(records, gap, variable, column):
     for case, dataset in records.items():
         if case.gap_m != gap:
             continue
-        values = (
-            [float(dataset[variable].max())]
-            if variable == "stress_peak"
-            else dataset[variable].values
-        )
+        values = dataset[variable].max() if variable == "stress_peak" else dataset[variable]
         rows += [
             {"gap_m": gap, "load_rms_N": case.load_rms_N, column: float(value)}
-            for value in values
+            for value in np.ravel(values)
             if value > 0.0 or variable == "contact_fraction"
         ]
     return rows

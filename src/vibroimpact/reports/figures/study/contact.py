@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.config.stage_settings import StageSettings
-from vibroimpact.geometry.sections import outer_width
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.reports.figures.plot import (
     Axis,
@@ -62,21 +61,21 @@ def figure_03_contact_law(config, structure):
         f" the support (total {stiffness:.3g} N/m) and the contact points that stand for it; each"
         " point carries the stiffness written next to it. Right: contact force against displacement"
         f" of the tube {WAYS[support.profile.kind]}, all points together, gap"
-        f" {gap_label(gap, outer_width(config.structure.section))}. The slope past the gap is"
+        f" {gap_label(config, gap)}. The slope past the gap is"
         " the tangent stiffness; force over displacement is the secant stiffness, which rises with"
         " the amplitude: this is why an equivalent linear support stiffens with the load."
     )
     panels = {"layer": _layer(support, structure), "law": _law(support, gap)}
     title = "Contact: a discretised elastic layer behind a gap"
     size = (7.6, 3.7)
-    return [Plot("figure_03_contact_law", title, caption, panels, size=size, widths=(1, 1.35))]
+    return Plot("figure_03_contact_law", title, caption, panels, size=size, widths=(1, 1.35))
 
 
 def _layer(support, structure):
     """Return the Panel of the stiffness over the height and the points that discretise it."""
     members = structure.contact.support == 0
-    height = structure.contact.arc_length[members] - structure.contact.arc_length[members].mean()
-    values = structure.contact.stiffness[members]
+    places, values = structure.contact.arc_length[members], structure.contact.stiffness[members]
+    height = places - places.mean()
     half = 0.5 * support.height_m
     density = values.sum() / support.height_m
     share = values / (support.height_m / len(values))
@@ -190,7 +189,7 @@ def figure_04_first_frequency(config):
         "first frequency of the driven plane, by number of contact points per support",
     )
     title, size = "First frequency against support stiffness", (7.6, 4.7)
-    return [Plot("figure_04_first_frequency", title, caption, {"main": panel}, size=size, legend=4)]
+    return Plot("figure_04_first_frequency", title, caption, {"main": panel}, size=size, legend=4)
 
 
 def _shaded_ranges(frequency, free, pinned, clamped) -> list[Item]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from vibroimpact.geometry.sections import outer_width
-from vibroimpact.reports.figures.plot import Axis, Mark, Panel, Plot, Series, extent
+from vibroimpact.reports.figures.plot import Axis, Mark, Panel, Plot, Series, extent, in_rows
 from vibroimpact.reports.figures.style import (
     GAP_COLOURS,
     GAP_MARKERS,
@@ -19,7 +20,7 @@ from vibroimpact.reports.figures.style import (
 from vibroimpact.study.method_agreement import COMPARED, collapse_rows, summary_rows
 
 from .linear_limits import contact_stiffness
-from .seed_scatter import medians, over_seeds
+from .seed_scatter import grouped, medians, over_seeds, spread
 
 COLUMNS = {"k": "k_N_per_m", "c": "c_N_s_per_m"}
 PREDICTED = ("statistical_linearisation", "secant")
@@ -60,6 +61,8 @@ def figure_13_equivalent_support(config, model, rows, level="load_rms_N", study=
         " simulated contact forces. Dashed: the contact stiffness, the upper limit."
     )
     gaps = sorted({row["gap_m"] for row in rows}, reverse=True)
+    loads = Axis(level, True, *extent([row["load_rms_N"] for row in rows], log=True))
+    lowest = config.identification.stiffness_range_N_per_m[0]
     panels: dict[str, Panel] = {}
     pairs = []
     for place in places:
@@ -71,14 +74,11 @@ def figure_13_equivalent_support(config, model, rows, level="load_rms_N", study=
         for gap in gaps:
             pair = tuple(f"{name}, {' in '.join(place)}, gap {gap:.5g} m" for name in "kc")
             inner = bool(len(pairs) % _across(len(places) * len(gaps)))
-            loads = Axis(level, True, *extent([row["load_rms_N"] for row in rows], log=True))
-            limit = _limit(model, place)
-            lowest = config.identification.stiffness_range_N_per_m[0]
             why = _why_empty(_of(rows, gap, place))
             panels[pair[0]] = Panel(
-                Axis(level, True, loads.low, loads.high, bare=True),
+                replace(loads, bare=True),
                 Axis(COLUMNS["k"], True, 0.5 * lowest, HIGHEST_K, bare=inner),
-                [*items[gap]["k"], limit],
+                [*items[gap]["k"], _limit(model, place)],
                 _title(config, gap, place, len(places), len(gaps)),
                 why,
             )
@@ -86,23 +86,21 @@ def figure_13_equivalent_support(config, model, rows, level="load_rms_N", study=
             panels[pair[1]] = Panel(loads, bottom, items[gap]["c"], note=why)
             pairs.append(pair)
     blocks = _in_blocks(pairs)
-    return [
-        Plot(
-            "figure_13_equivalent_support",
-            "Equivalent stiffness and damping by every method",
-            caption,
-            panels,
-            blocks,
-            (max(2.6 + 2.6 * len(blocks[0]), 6.4), 3.2 * len(blocks)),
-            legend=(2, 4, 5)[min(len(blocks[0]), 3) - 1],
-        )
-    ]
+    return Plot(
+        "figure_13_equivalent_support",
+        "Equivalent stiffness and damping by every method",
+        caption,
+        panels,
+        blocks,
+        (max(2.6 + 2.6 * len(blocks[0]), 6.4), 3.2 * len(blocks)),
+        legend=(2, 4, 5)[min(len(blocks[0]), 3) - 1],
+    )
 
 
 def _title(config, gap, place, places, gaps):
     if places > 1:
         return f"{place[0]} in {place[1]}" + (f", {gap * 1e3:.3g} mm" * (gaps > 1))
-    return f"gap {gap_label(gap, outer_width(config.structure.section))}"
+    return f"gap {gap_label(config, gap)}"
 
 
 def _limit(model, place):
@@ -128,15 +126,14 @@ def _items(rows, beside, level):
 
 def _study_curve(rows, column):
     """Return the median of a study's compared methods against load, with their range."""
-    usable = [row for row in rows if row["method"] in COMPARED and np.isfinite(row[column])]
-    loads = sorted({row["load_rms_N"] for row in usable})
+    compared = [row for row in rows if row["method"] in COMPARED]
+    loads, values, _ = grouped(compared, "load_rms_N", column)
     if not loads:
         return []
-    values = [[row[column] for row in usable if row["load_rms_N"] == load] for load in loads]
-    middle, low, high = ([pick(each) for each in values] for pick in (np.median, np.min, np.max))
+    middle, low, high = spread(values)
     look = {"colour": GREY, "width": 1.6, "order": 0}
     label = "study, range of methods and seeds"
-    return [Series("study", loads, middle, {}, low, high, True, "load_rms_N", label=label, **look)]
+    return [Series("study", loads, middle, {}, low, high, True, label=label, **look)]
 
 
 def _methods(rows, quantity, level):
@@ -169,11 +166,9 @@ def _across(count):
 
 def _in_blocks(pairs):
     """Return the rows of pairs of panels (top, bottom), side by side in blocks of two rows."""
-    across, rows = _across(len(pairs)), []
-    for first in range(0, len(pairs), across):
-        block = pairs[first : first + across]
-        rows += [[pair[row] for pair in block] + ["."] * (across - len(block)) for row in (0, 1)]
-    return rows
+    across = _across(len(pairs))
+    halves = (in_rows([pair[half] for pair in pairs], across) for half in (0, 1))
+    return [row for block in zip(*halves, strict=True) for row in block]
 
 
 def _place(row):
@@ -213,37 +208,18 @@ def collapse(config, model, rows):
         own = [row for row in table if _place(row) == place]
         of = "" if len(places) == 1 else f", {' in '.join(place)}"
         why = _why_empty(own)
-        highest = 2.5 * contact_stiffness(model)
         stiffness = [*_of_gaps(config, own, "k"), *_predictions(own)]
         damping = _of_gaps(config, own, "c")
         shown = [value for item in [*stiffness, *damping] for value in item.x]
         loads = Axis("load_over_gap_N_per_m", True, *extent(shown, log=True))
-        panels[f"k, {' in '.join(place)}"] = Panel(
-            loads,
-            Axis(COLUMNS["k"], True, 0.5 * lowest, highest),
-            stiffness,
-            f"stiffness{of}",
-            why,
-        )
-        panels[f"c, {' in '.join(place)}"] = Panel(
-            loads,
-            Axis(COLUMNS["c"]),
-            [*damping, Mark("", "y", 0.0, colour=GREY, width=0.8)],
-            f"damping{of}" if of else "damping on top of the modal damping",
-            why,
-        )
-    keys = list(panels)
-    return [
-        Plot(
-            "collapse",
-            _collapse_title(rows),
-            caption,
-            panels,
-            [keys[first : first + 2] for first in range(0, len(keys), 2)],
-            (7.6, 1.0 + 3.2 * len(places)),
-            legend=3,
-        )
-    ]
+        level = Axis(COLUMNS["k"], True, 0.5 * lowest, 2.5 * contact_stiffness(model))
+        name, zero = " in ".join(place), Mark("", "y", 0.0, colour=GREY, width=0.8)
+        title = f"damping{of}" if of else "damping on top of the modal damping"
+        panels[f"k, {name}"] = Panel(loads, level, stiffness, f"stiffness{of}", why)
+        panels[f"c, {name}"] = Panel(loads, Axis(COLUMNS["c"]), [*damping, zero], title, why)
+    pairs = in_rows(list(panels), 2)
+    size = (7.6, 1.0 + 3.2 * len(places))
+    return Plot("collapse", _collapse_title(rows), caption, panels, pairs, size, legend=3)
 
 
 def _collapse_title(rows):
@@ -260,19 +236,17 @@ def _collapse_title(rows):
 
 def _of_gaps(config, rows, quantity):
     """Return the values of the compared methods at each gap."""
-    found = []
-    for index, gap in enumerate(sorted({row["gap_m"] for row in rows}, reverse=True)):
-        found += over_seeds(
-            [row for row in rows if row["gap_m"] == gap and row["method"] in COMPARED],
-            "load_over_gap_N_per_m",
-            COLUMNS[quantity],
-            "identified",
-            tags=("gap_m", "load_rms_N"),
-            line="",
-            label=f"gap {gap_label(gap, outer_width(config.structure.section))}",
-            **look_of_gap(index),
-        )
+    found, x, tags = [], "load_over_gap_N_per_m", ("gap_m", "load_rms_N")
+    for gap, look in looks_of_gaps(config, [row["gap_m"] for row in rows]):
+        own = [row for row in rows if row["gap_m"] == gap and row["method"] in COMPARED]
+        found += over_seeds(own, x, COLUMNS[quantity], "identified", tags, line="", **look)
     return found
+
+
+def looks_of_gaps(config, gaps) -> Iterator[tuple[float, dict[str, Any]]]:
+    """Yield (gap in m, how its curve looks, with its label) of the gaps, the largest first."""
+    for index, gap in enumerate(sorted(set(gaps), reverse=True)):
+        yield gap, look_of_gap(index) | {"label": f"gap {gap_label(config, gap)}"}
 
 
 def look_of_gap(index: int) -> dict[str, Any]:

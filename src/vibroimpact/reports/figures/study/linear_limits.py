@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 from scipy import linalg
 
-from vibroimpact.identify.linear.modes import contact_matrix, driven_block
+from vibroimpact.identify.linear.modes import contact_matrix, driven_block, support_stiffness
 from vibroimpact.identify.linear.support_groups import grouped_supports
 
 HELD = 1.0e14  # N/m: practically fixed contact points; larger values show round-off
+LIMIT_MODES = 12  # of the lowest, looked for in a band
 
 
 def driven_frequencies(model, stiffness, count=1):
@@ -20,17 +21,20 @@ def driven_frequencies(model, stiffness, count=1):
     contact = contact_matrix(model)[modes]
     rows = []
     for k in np.atleast_1d(stiffness):
-        squares = linalg.eigvalsh(np.diag(model.omega[modes] ** 2) + k * contact @ contact.T)
+        squares = linalg.eigvalsh(support_stiffness(model.omega[modes], contact, k))
         rows.append(np.sqrt(np.maximum(squares[:count], 0.0)) / (2.0 * np.pi))
     return np.array(rows)
 
 
-def linear_modes(model, k, count):
-    """Return (count,) lowest frequencies in Hz of the driven plane with bilateral stiffness k.
-
-    k: N/m per support.
+def limit_modes(model, band):
+    """Return [(name, (mode,) Hz)]: the modes of the driven plane inside a band (low, high), of the
+    free tube and of the tube in full contact.
     """
-    return driven_frequencies(model, k, count)[0]
+    found = []
+    for name, k in (("free modes", 0.0), ("modes in full contact", contact_stiffness(model))):
+        values = driven_frequencies(model, k, LIMIT_MODES)[0]
+        found.append((name, values[(values > band[0]) & (values < band[1])]))
+    return found
 
 
 def contact_stiffness(model, group="all"):
@@ -46,5 +50,5 @@ def shown_band(model, highest_Hz=np.inf):
     It reaches from well below the first free mode to just above the third mode of the driven plane
     in full contact.
     """
-    third = linear_modes(model, contact_stiffness(model), 3)[-1]
-    return 0.35 * linear_modes(model, 0.0, 1)[0], min(1.1 * third, highest_Hz)
+    third = driven_frequencies(model, contact_stiffness(model), 3)[0, -1]
+    return 0.35 * driven_frequencies(model, 0.0)[0, 0], min(1.1 * third, highest_Hz)

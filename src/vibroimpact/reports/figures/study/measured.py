@@ -56,10 +56,10 @@ def measured_figures(found, beside=None):
     responses = gather(config, model, found.spectra.values())
     gap = shown_gap(config)
     return [
-        *figure_13_equivalent_support(
+        figure_13_equivalent_support(
             config, model, found.rows, found.levels, _study_rows(found, beside), _caption(beside)
         ),
-        *figure_05_measured(
+        figure_05_measured(
             config,
             model,
             responses,
@@ -67,7 +67,7 @@ def measured_figures(found, beside=None):
             _simulated(found, beside, gap),
             found.levels,
         ),
-        *figure_06_levels(config, model, responses, found.levels),
+        figure_06_levels(config, model, responses, found.levels),
     ]
 
 

@@ -7,17 +7,16 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.campaign.file import SYNTHETIC, channel_at, channel_signal
-from vibroimpact.geometry.sections import outer_width
 from vibroimpact.identify.linear.responses import response_psd
 from vibroimpact.identify.spectra.welch import psd_statistics, segment_spectra
-from vibroimpact.reports.figures.plot import Axis, Item, Mark, Panel, Plot, Series
+from vibroimpact.reports.figures.plot import Axis, Item, Mark, Panel, Plot, Series, in_rows
 from vibroimpact.reports.figures.style import BLACK, BLUE, GREEN, RED, gap_label, label_of, shown
+from vibroimpact.reports.study_tables import spread_evenly
 
-from .linear_limits import contact_stiffness, linear_modes, shown_band
-from .psd_table import driven_sensor
+from .linear_limits import limit_modes, shown_band
+from .psd_table import STATISTICS, driven_sensor, inside
 
 LEVELS = 4
-STATISTICS = ("mean", "min", "max")
 ENVELOPE_HZ = 0.5  # width of the blocks whose extremes are drawn; those of bins would hide the rest
 
 
@@ -29,36 +28,29 @@ def figure_05_overlay(config, model, responses, campaign):
     sensor = driven_sensor(config, config.identification.response_point)
     records = _shown_records(campaign, responses.gap_m)
     gap = float(campaign["gap"].values[records[0]])
-    diameter = outer_width(config.structure.section)
     source = str(campaign.attrs.get("source", "")) or "no source given"
     title = "Synthetic campaign" if source.startswith(SYNTHETIC) else "Campaign"
     caption = (
         f"PSD of acceleration at {sensor} for {len(records)} loads: campaign (green; gap"
-        f" {gap_label(gap, diameter)}; {source}) over the simulation of the study (blue; gap"
-        f" {gap_label(responses.gap_m, diameter)}, nearest load, all seeds). Thick: mean over"
+        f" {gap_label(config, gap)}; {source}) over the simulation of the study (blue; gap"
+        f" {gap_label(config, responses.gap_m)}, nearest load, all seeds). Thick: mean over"
         " segments; thin, dotted: smallest and largest segment (extremes of blocks of"
         f" {ENVELOPE_HZ:g} Hz). Vertical: modes of the driven plane of the tube, free (black,"
         " dashed) and in full contact (red, dashed)."
     )
-    position, direction = (
-        array[model.sensor_names.index(sensor)]
-        for array in (model.sensor_positions, model.sensor_directions)
-    )
-    channel = channel_at(campaign, position, direction, "acceleration")
-    panels = {
-        f"record {record}": _campaign_panel(
-            config, model, responses, (campaign, record, channel), sensor
-        )
-        for record in records
-    }
-    return [_in_pairs(f"{title} over simulation", caption, panels)]
+    at = model.sensor_names.index(sensor)
+    place = model.sensor_positions[at], model.sensor_directions[at]
+    channel = channel_at(campaign, *place, "acceleration")
+    panels = {}
+    for record in records:
+        measured = campaign, record, channel
+        panels[f"record {record}"] = _campaign_panel(config, model, responses, measured, sensor)
+    return _in_pairs(f"{title} over simulation", caption, panels)
 
 
 def _in_pairs(title, caption, panels):
     """Return the Plot of panels, two side by side."""
-    keys = list(panels)
-    rows = [keys[row : row + 2] for row in range(0, len(keys), 2)]
-    rows[-1] += ["."] * (len(rows[0]) - len(rows[-1]))
+    rows = in_rows(list(panels), min(2, len(panels)))
     size = (9.0, 0.6 + 3.0 * len(rows))
     return Plot("figure_05_overlay", title, caption, panels, rows, size, share="x", legend=3)
 
@@ -86,8 +78,8 @@ def _campaign_panel(config, model, responses, measured, sensor):
 
 def _axes(band, frequency, statistics):
     """Return the axes that show the band of (mean, smallest, largest) PSDs."""
-    inside = (frequency >= band[0]) & (frequency <= band[1])
-    lowest, highest = np.percentile(statistics[0][inside], 1.0), statistics[2][inside].max()
+    kept = inside(frequency, band)
+    lowest, highest = np.percentile(statistics[0][kept], 1.0), statistics[2][kept].max()
     level = Axis("psd_m2_per_s4_per_Hz", True, 0.01 * lowest, 3.0 * highest)
     return Axis("frequency_Hz", False, *band), level
 
@@ -108,16 +100,12 @@ def _shown_records(campaign, gap_m):
     distance = np.where(np.isfinite(gaps), np.abs(gaps - gap_m), 0.0)
     same_gap = np.flatnonzero(np.isclose(distance, distance.min()))
     by_load = {round(float(np.log(loads[index])), 2): int(index) for index in same_gap[::-1]}
-    records = [by_load[key] for key in sorted(by_load)]
-    chosen = np.unique(
-        np.round(np.linspace(0, len(records) - 1, min(LEVELS, len(records)))).astype(int)
-    )
-    return [records[index] for index in chosen]
+    return spread_evenly([by_load[key] for key in sorted(by_load)], LEVELS)
 
 
 def _spectrum(band, frequency, statistics, curve, tags, colour) -> list[Item]:
     """Return mean, smallest and largest PSD (frequency,) in (m/s²)²/Hz inside a band."""
-    kept = (frequency >= band[0]) & (frequency <= band[1])
+    kept = inside(frequency, band)
     frequency, (mean, low, high) = frequency[kept], (psd[kept] for psd in statistics)
     look: dict[str, Any] = {"colour": colour, "width": 0.8}
     items: list[Item] = [
@@ -137,10 +125,8 @@ def _spectrum(band, frequency, statistics, curve, tags, colour) -> list[Item]:
 def _modes(model, band) -> list[Item]:
     """Return the Marks of the modes of the driven plane, free and in full contact."""
     items: list[Item] = []
-    stiff = contact_stiffness(model)
-    for name, k, colour in (("free modes", 0.0, BLACK), ("modes in full contact", stiff, RED)):
+    for (name, values), colour in zip(limit_modes(model, band), (BLACK, RED), strict=True):
         look: dict[str, Any] = {"colour": colour, "line": "--", "width": 0.9, "order": 0}
-        values = [value for value in linear_modes(model, k, 12) if band[0] < value < band[1]]
         for index, value in enumerate(values):
             items.append(Mark(name, "x", value, label="" if index else name, **look))
     return items
@@ -156,13 +142,10 @@ def figure_05_measured(config, model, measured, supports, simulated=None, level=
     level: column of the loads; response_rms_m if they are the RMS of the response.
     """
     sensor = driven_sensor(config, config.identification.response_point)
-    chosen = np.unique(
-        np.round(np.linspace(0, measured.load.size - 1, min(LEVELS, measured.load.size)))
-    ).astype(int)
     band = shown_band(model, measured.frequency[-1])
     fitted = config.identification.broadband.band_Hz
     panels = {}
-    for index in chosen:
+    for index in spread_evenly(range(measured.load.size), LEVELS):
         load = float(measured.load[index])
         psds = [measured.psd["acceleration", sensor, name][index] for name in STATISTICS]
         items = _spectrum(band, measured.frequency, psds, "measured", {level: load}, GREEN)
@@ -174,7 +157,7 @@ def figure_05_measured(config, model, measured, supports, simulated=None, level=
         axes = _axes(band, measured.frequency, psds)
         panels[f"level {index}"] = Panel(*axes, [*items, *_modes(model, band)], title)
     caption = _measured_caption(config, sensor, measured.gap_m, simulated is not None)
-    return [_in_pairs("Measured spectra over the equivalent linear tube", caption, panels)]
+    return _in_pairs("Measured spectra over the equivalent linear tube", caption, panels)
 
 
 def _measured_caption(config, sensor, gap_m, simulated):
@@ -182,7 +165,7 @@ def _measured_caption(config, sensor, gap_m, simulated):
     beside = " Blue: simulation of the study at the nearest load." if simulated else ""
     return (
         f"PSD of acceleration at {sensor.rpartition('.')[0]}, gap"
-        f" {gap_label(gap_m, outer_width(config.structure.section))}: measured (green;"
+        f" {gap_label(config, gap_m)}: measured (green;"
         " thick: mean over segments and records, dotted: smallest and largest segment). Black: the"
         " linear tube on its equivalent support in the band of the broadband comparison, its level"
         f" fitted.{beside} Vertical: modes of the"
@@ -209,8 +192,8 @@ def _equivalent_line(model, sensor, measured, band, support):
     measured: (frequency in Hz, mean PSD). band: of the fit, in Hz.
     """
     (frequency, mean), (k, c, force) = measured, support
-    inside = (frequency >= band[0]) & (frequency <= band[1])
-    frequency, mean = frequency[inside], mean[inside]
+    kept = inside(frequency, band)
+    frequency, mean = frequency[kept], mean[kept]
     shape = model.sensor_shapes[:, [model.sensor_names.index(sensor)]]
     psd = response_psd(model, k, c, frequency, shape, "acceleration")[0]
     if force is not None:

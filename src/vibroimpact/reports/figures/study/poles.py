@@ -6,8 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from vibroimpact.geometry.sections import outer_width
-from vibroimpact.identify.linear.poles import first_pole
+from vibroimpact.identify.linear.poles import first_pole, frequency_of
 from vibroimpact.identify.peak import LEVELS, level_edges
 from vibroimpact.reports.figures.plot import Axis, Mark, Panel, Plot, Series
 from vibroimpact.reports.figures.style import BLACK, GREY, gap_label, ordered_colours
@@ -15,7 +14,7 @@ from vibroimpact.reports.figures.style import BLACK, GREY, gap_label, ordered_co
 from .cases_of_gap import first_seed, spread_loads
 from .equivalent import look_of
 from .linear_limits import contact_stiffness
-from .psd_table import driven_sensor
+from .psd_table import driven_sensor, inside
 from .seed_scatter import over_seeds
 
 SHOWN_PEAKS = 5
@@ -31,7 +30,7 @@ def figure_09_poles(config, model, curves, spectra, rows):
     sensor = driven_sensor(config, config.identification.response_point)
     caption = (
         f"Main peak at {sensor}, gap"
-        f" {gap_label(gap, outer_width(config.structure.section))}. Left: PSD of displacement /"
+        f" {gap_label(config, gap)}. Left: PSD of displacement /"
         " load² of one seed (thin), the resonance curve fitted to it (thick), and its widths at"
         " 1/2, 1/4 and 1/25 of the height (bars). Right: frequency and damping ratio of the peak"
         " against load from the widths and from an output-only LSCF: median and range over seeds."
@@ -40,38 +39,25 @@ def figure_09_poles(config, model, curves, spectra, rows):
     )
     cases, loads = first_seed(curves), spread_loads(rows, SHOWN_PEAKS)
     colours = ordered_colours(loads)
-    low, high = config.identification.peak_search_Hz
+    band = config.identification.peak_search_Hz
     peaks = []
     for load in loads:
         files = curves[cases[load]], spectra[cases[load]].sel(sensor=sensor)
         poles = [row for row in rows if row["load_rms_N"] == load]
         poles = {row["method"]: row for row in poles if row["seed"] == cases[load].seed}
-        peaks += _peak(files, poles, load, (low, high), colours[load])
+        peaks += _peak(files, poles, load, band, colours[load])
     if peaks and peaks[-1].curve.startswith("width"):
         peaks[-1] = replace(peaks[-1], label="widths at 1/2, 1/4, 1/25")
+    axes = Axis("frequency_Hz", False, *band), Axis("psd_per_load2_m2_per_N2_per_Hz", True)
+    legend = {"legend": "lower left", "legend_title": "load"}
     panels = {
-        "peaks": Panel(
-            Axis("frequency_Hz", False, low, high),
-            Axis("psd_per_load2_m2_per_N2_per_Hz", True),
-            peaks,
-            f"{sensor}, first seed",
-            legend="lower left",
-            legend_title="load",
-        ),
+        "peaks": Panel(*axes, peaks, f"{sensor}, first seed", **legend),
         "frequency": _against_load(model, rows, "peak_frequency_Hz", "frequency_Hz"),
         "damping": _against_load(model, rows, "damping_ratio", "damping_ratio"),
     }
-    return [
-        Plot(
-            "figure_09_poles",
-            "Main peak: frequency and width against load",
-            caption,
-            panels,
-            [["peaks", "frequency"], ["peaks", "damping"]],
-            (7.6, 5.0),
-            widths=(1.15, 1.0),
-        )
-    ]
+    title = "Main peak: frequency and width against load"
+    rows = [["peaks", "frequency"], ["peaks", "damping"]]
+    return Plot("figure_09_poles", title, caption, panels, rows, (7.6, 5.0), widths=(1.15, 1.0))
 
 
 def _against_load(model, rows, column, table_column):
@@ -82,12 +68,10 @@ def _against_load(model, rows, column, table_column):
         hollow = method in ("peak_quarter", "peak_25th")
         look = look_of(method) | {"width": 0.9, "hollow": hollow, "order": None}
         items += over_seeds(poles, "load_rms_N", column, method, **look)
-    for k, name in ((0.0, "free"), (contact_stiffness(model), "in full contact")):
-        pole = first_pole(model, k, 0.0)
-        frequency, ratio = abs(pole) / (2.0 * np.pi), -pole.real / abs(pole)
-        value = frequency if column == "peak_frequency_Hz" else ratio
-        items.append(Mark(name, "y", value, name, colour=GREY, line=":", width=1.0))
     frequency = column == "peak_frequency_Hz"
+    for k, name in ((0.0, "free"), (contact_stiffness(model), "in full contact")):
+        value = frequency_of(first_pole(model, k, 0.0))[0 if frequency else 1]
+        items.append(Mark(name, "y", value, name, colour=GREY, line=":", width=1.0))
     loads = Axis("load_rms_N", True, bare=frequency)
     title, legend = ("frequency", "upper left") if frequency else ("damping ratio", "")
     return Panel(loads, Axis(column), items, title, legend=legend)
@@ -101,10 +85,10 @@ def _peak(files, poles, load, band_Hz, colour):
     fitted, spectrum = files
     tags = {"load_rms_N": load}
     frequency = spectrum["frequency"].values
-    inside = (frequency >= band_Hz[0]) & (frequency <= band_Hz[1])
-    psd = spectrum["psd_displacement_mean"].values[inside].astype(float) / load**2
+    kept = inside(frequency, band_Hz)
+    psd = spectrum["psd_displacement_mean"].values[kept].astype(float) / load**2
     look = {"colour": colour, "width": 0.6, "alpha": 0.7}
-    items = [Series("PSD", frequency[inside], psd, tags, **look)]
+    items = [Series("PSD", frequency[kept], psd, tags, **look)]
     for method, level in LEVELS.items():
         curve = fitted["peak_curve"].sel(level=method).values
         known, pole = np.isfinite(curve), poles.get(method)

@@ -9,6 +9,7 @@ import numpy as np
 from vibroimpact.excitation.force_files import read_force
 from vibroimpact.excitation.line_force_spectrum import line_force_psd
 from vibroimpact.geometry.sections import outer_width
+from vibroimpact.identify.linear.responses import psd_family
 from vibroimpact.identify.spectra.welch import driven_axis, psd_statistics, segment_spectra
 
 from .cases_of_gap import paths_of_gap, shown_gap
@@ -16,11 +17,8 @@ from .linear_limits import shown_band
 
 BAND_POINTS = 4000  # of the integral over the band of a force
 QUANTITIES = ("displacement", "acceleration")
-STATISTICS = {
-    "mean": np.add,
-    "min": np.minimum,
-    "max": np.maximum,
-}  # and how those of several seeds are put together
+# Of segments, and how those of several seeds are put together.
+STATISTICS = {"mean": np.add, "min": np.minimum, "max": np.maximum}
 
 
 @dataclass(frozen=True)
@@ -95,10 +93,8 @@ def gather(config, model, spectra):
 def _in_plane_share(dataset, driven):
     """Return one row per point: mean square of the other directions over the driven one, in dB."""
     names = [str(name) for name in dataset["sensor"].values]
-    power = dict(
-        zip(names, dataset["psd_displacement_mean"].values.sum(axis=-1, dtype=float), strict=True)
-    )
-    rows = []
+    powers = dataset["psd_displacement_mean"].values.sum(axis=-1, dtype=float)
+    power, rows = dict(zip(names, powers, strict=True)), []
     for point in dict.fromkeys(name.rpartition(".")[0] for name in power):
         across = power.get(f"{point}.{driven}", 0.0)
         along = sum(
@@ -127,7 +123,7 @@ def unit_force_psd(config, frequency):
     excitation = config.excitation
     if excitation.kind == "band_limited":
         low, high = excitation.band_Hz
-        return np.where((frequency >= low) & (frequency <= high), 1.0 / (high - low), 0.0)
+        return np.where(inside(frequency, (low, high)), 1.0 / (high - low), 0.0)
     if excitation.kind == "turbulence":
         diameter = outer_width(config.structure.section)
         psd = line_force_psd(excitation, diameter, frequency)
@@ -137,6 +133,21 @@ def unit_force_psd(config, frequency):
     measured = segment_spectra(force.values, force.rate, config.spectra)
     mean = psd_statistics(measured.values)[0][0] / np.mean(np.square(force.values))
     return np.interp(frequency, measured.frequency, mean, left=0.0, right=0.0)
+
+
+def linear_psds(config, model, sensor, stiffness, frequency):
+    """Return the PSDs (k, frequency) in m²/Hz of a sensor of the linear tube under 1 N RMS.
+
+    stiffness (k,): N/m per support, bilateral; no damping is added.
+    """
+    shape = model.sensor_shapes[:, model.sensor_names.index(sensor)]
+    family = psd_family(model, stiffness, [0.0], frequency, shape)[:, 0]
+    return family * unit_force_psd(config, frequency)
+
+
+def inside(frequency, band):
+    """Return (frequency,) bool: whether frequencies in Hz lie in a band (low, high)."""
+    return (frequency >= band[0]) & (frequency <= band[1])
 
 
 def driven_sensor(config, point):

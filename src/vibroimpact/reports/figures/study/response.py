@@ -6,8 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.geometry.sections import outer_width
-from vibroimpact.identify.linear.responses import psd_family
 from vibroimpact.reports.figures.plot import (
     Axis,
     ColourBar,
@@ -20,9 +18,9 @@ from vibroimpact.reports.figures.plot import (
 )
 from vibroimpact.reports.figures.style import BLACK, ORANGE, gap_label, number, ordered_colours
 
-from .equivalent import look_of_gap
-from .linear_limits import contact_stiffness, linear_modes, shown_band
-from .psd_table import driven_sensor, unit_force_psd
+from .equivalent import looks_of_gaps
+from .linear_limits import contact_stiffness, limit_modes, shown_band
+from .psd_table import driven_sensor, inside, linear_psds
 from .seed_scatter import over_seeds
 
 FREE_K = 1.0  # N/m, the paper's lower bound
@@ -53,15 +51,8 @@ def figure_06_levels(config, model, responses, level="load_rms_N"):
         " in full bilateral contact (top)."
     )
     band = shown_band(model, responses.frequency[-1])
-    kept = _inside(responses.frequency, band)
-    frequency, loads = responses.frequency[kept], responses.load
-    levels = {
-        point: _decibels(
-            responses.psd["displacement", driven_sensor(config, point), "mean"][:, kept]
-            / loads[:, None] ** 2
-        )
-        for point in points
-    }
+    spectra = {point: _per_load2(responses, driven_sensor(config, point), band) for point in points}
+    levels = {point: _decibels(values) for point, (_, values) in spectra.items()}
     top = max(values.max() for values in levels.values())
     ends = top - DYNAMIC_RANGE_DB, top
     curve = f"mean PSD / {word}²"
@@ -69,25 +60,18 @@ def figure_06_levels(config, model, responses, level="load_rms_N"):
         point: Panel(
             Axis("frequency_Hz"),
             Axis(level, True),
-            [Map(curve, frequency, loads, values, column, *ends), *_modes(model, band)],
+            [
+                Map(curve, spectra[point][0], responses.load, values, column, *ends),
+                *_modes(model, band),
+            ],
             driven_sensor(config, point),
         )
         for point, values in levels.items()
     }
     title = f"Peaks of the response against {'load' if word == 'load' else 'its level'}"
-    bar = ColourBar(column, *ends, ends="min")
-    return [
-        Plot(
-            "figure_06_levels",
-            title,
-            caption,
-            panels,
-            size=(7.6, 4.4),
-            share="y",
-            legend=2,
-            colour_bars=[bar],
-        )
-    ]
+    bars = [ColourBar(column, *ends, ends="min")]
+    look = {"size": (7.6, 4.4), "share": "y", "legend": 2, "colour_bars": bars}
+    return Plot("figure_06_levels", title, caption, panels, **look)
 
 
 def figure_07_overlay_of_loads(config, model, responses):
@@ -104,19 +88,15 @@ def figure_07_overlay_of_loads(config, model, responses):
         " N/m (solid) under the same force. Low loads follow the first, high loads approach the"
         " second, with wider peaks and without its anti-resonances."
     )
-    band = shown_band(model, responses.frequency[-1])
-    kept = _inside(responses.frequency, band)
-    frequency, loads = responses.frequency[kept], responses.load
-    levels = responses.psd["displacement", sensor, "mean"][:, kept] / loads[:, None] ** 2
+    band, loads = shown_band(model, responses.frequency[-1]), responses.load
+    frequency, levels = _per_load2(responses, sensor, band)
     colours, items = ordered_colours(loads), []
     for load, psd in zip(loads, levels, strict=True):
         look = {"colour": colours[load], "width": 0.9, "alpha": 0.9}
         items.append(Series("non-linear", frequency, psd, {"load_rms_N": load}, **look))
-    shape = model.sensor_shapes[:, model.sensor_names.index(sensor)]
-    force = unit_force_psd(config, frequency)
-    force[force == 0.0] = np.nan  # without force there is no linear line to draw
     for k, line in ((FREE_K, "--"), (stiff, "-")):
-        psd = psd_family(model, [k], [0.0], frequency, shape)[0, 0] * force
+        (psd,) = linear_psds(config, model, sensor, [k], frequency)
+        psd[psd == 0.0] = np.nan  # without force there is no linear line to draw
         look: dict[str, Any] = {"line": line, "width": 1.3, "order": 5, "colour": BLACK}
         look["label"] = f"linear, k = {number(k)} N/m"
         items.append(Series("linear", frequency, psd, {"k_N_per_m": k}, **look))
@@ -130,17 +110,9 @@ def figure_07_overlay_of_loads(config, model, responses):
     )
     title = "Spectra of all loads between the linear limits"
     ends = (loads[0], loads[-1]) if len(loads) > 1 else extent(loads, log=True)
-    bar = ColourBar("load_rms_N", *ends, log=True, curves=True)
-    return [
-        Plot(
-            "figure_07_overlay_of_loads",
-            title,
-            caption,
-            {"main": panel},
-            size=(7.6, 4.6),
-            colour_bars=[bar],
-        )
-    ]
+    look = {"colour_bars": [ColourBar("load_rms_N", *ends, log=True, curves=True)]}
+    panels = {"main": panel}
+    return Plot("figure_07_overlay_of_loads", title, caption, panels, size=(7.6, 4.6), **look)
 
 
 def figure_08_load_and_stiffness(config, model, responses):
@@ -154,20 +126,16 @@ def figure_08_load_and_stiffness(config, model, responses):
         " (dark) fade. Same colours on both sides. Triangles: modes of the driven plane of the"
         " free tube (bottom) and in full contact (top)."
     )
-    band = shown_band(model, responses.frequency[-1])
-    kept = _inside(responses.frequency, band)
-    frequency, loads = responses.frequency[kept], responses.load
-    psd = responses.psd["displacement", sensor, "mean"][:, kept]
-    measured = _decibels(psd / loads[:, None] ** 2)
+    band, loads = shown_band(model, responses.frequency[-1]), responses.load
+    frequency, levels = _per_load2(responses, sensor, band)
+    measured = _decibels(levels)
     stiffness = np.geomspace(
         0.1 * config.identification.stiffness_range_N_per_m[0],
         2.5 * contact_stiffness(model),
         LINEAR_STIFFNESS_STEPS,
     )
-    shape = model.sensor_shapes[:, model.sensor_names.index(sensor)]
     coarse = frequency[::2]
-    family = psd_family(model, stiffness, [0.0], coarse, shape)[:, 0]
-    linear = _decibels(family * unit_force_psd(config, coarse))
+    linear = _decibels(linear_psds(config, model, sensor, stiffness, coarse))
     ends, curve = (measured.max() - DYNAMIC_RANGE_DB, measured.max()), "PSD / load²"
     modes = _modes(model, band)
     panels = {
@@ -184,21 +152,9 @@ def figure_08_load_and_stiffness(config, model, responses):
             "linear, against the bilateral stiffness",
         ),
     }
-    title, bar = (
-        "Load with contact, stiffness without",
-        ColourBar("psd_dB", *ends, ends="both"),
-    )
-    return [
-        Plot(
-            "figure_08_load_and_stiffness",
-            title,
-            caption,
-            panels,
-            size=(7.6, 4.4),
-            legend=2,
-            colour_bars=[bar],
-        )
-    ]
+    title, bars = "Load with contact, stiffness without", [ColourBar("psd_dB", *ends, ends="both")]
+    look = {"size": (7.6, 4.4), "legend": 2, "colour_bars": bars}
+    return Plot("figure_08_load_and_stiffness", title, caption, panels, **look)
 
 
 def in_plane_share(config, responses):
@@ -212,22 +168,11 @@ def in_plane_share(config, responses):
         " itself because contact turns it."
     )
     rows = [row for row in responses.share if row["point"] == point]
-    items, diameter = [], outer_width(config.structure.section)
-    for index, gap in enumerate(sorted({row["gap_m"] for row in rows}, reverse=True)):
-        chosen = [
-            {**row, "load_over_gap_N_per_m": row["load_rms_N"] / gap}
-            for row in rows
-            if row["gap_m"] == gap
-        ]
-        look = look_of_gap(index) | {"label": f"gap {gap_label(gap, diameter)}"}
-        items += over_seeds(
-            chosen,
-            "load_over_gap_N_per_m",
-            "in_plane_share_dB",
-            "in-plane share",
-            tags=("gap_m", "load_rms_N"),
-            **look,
-        )
+    items = []
+    x, y, tags = "load_over_gap_N_per_m", "in_plane_share_dB", ("gap_m", "load_rms_N")
+    for gap, look in looks_of_gaps(config, [row["gap_m"] for row in rows]):
+        chosen = [{**row, x: row["load_rms_N"] / gap} for row in rows if row["gap_m"] == gap]
+        items += over_seeds(chosen, x, y, "in-plane share", tags, **look)
     lowest = extent([value for item in items for value in item.low])[0]
     panel = Panel(
         Axis("load_over_gap_N_per_m", True),
@@ -237,16 +182,18 @@ def in_plane_share(config, responses):
         "sensors in one direction only",
         legend="lower right",
     )
-    return [Plot("in_plane_share", "Motion across the driven direction", caption, {"main": panel})]
+    return Plot("in_plane_share", "Motion across the driven direction", caption, {"main": panel})
 
 
 def _gap_words(config, responses):
-    return f"gap {gap_label(responses.gap_m, outer_width(config.structure.section))}"
+    return f"gap {gap_label(config, responses.gap_m)}"
 
 
-def _inside(frequency, band):
-    """Return (frequency,) bool of the bins in a band, the zero bin left out."""
-    return (frequency >= band[0]) & (frequency <= band[1]) & (frequency > 0.0)
+def _per_load2(responses, sensor, band):
+    """Return (frequency, mean PSD / load² (load, frequency)) of a sensor in a band above 0 Hz."""
+    kept = inside(responses.frequency, band) & (responses.frequency > 0.0)
+    psd = responses.psd["displacement", sensor, "mean"][:, kept]
+    return responses.frequency[kept], psd / responses.load[:, None] ** 2
 
 
 def _decibels(values):
@@ -256,13 +203,11 @@ def _decibels(values):
 
 def _modes(model, band):
     """Return the modes of the driven plane: free below a map, in full contact above it."""
-    stiff, found = contact_stiffness(model), []
-    for name, k, height, marker, colour in (
-        ("free modes", 0.0, 0.012, "^", "white"),
-        ("modes in full contact", stiff, 0.988, "v", ORANGE),
+    looks = (0.012, "^", "white"), (0.988, "v", ORANGE)
+    found = []
+    for (name, values), (height, marker, colour) in zip(
+        limit_modes(model, band), looks, strict=True
     ):
-        values = linear_modes(model, k, 12)
-        values = values[(values > band[0]) & (values < band[1])]
         look = {"label": name, "marker": marker, "colour": colour, "size": 7, "order": 6}
         found.append(Signs(name, values, height, **look))
     return found

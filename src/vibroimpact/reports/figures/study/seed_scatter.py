@@ -16,25 +16,29 @@ def over_seeds(rows, x_column, y_column, curve, tags=(), **look: Any) -> list[Se
         list is empty without any.
     tags: further recorded columns, constant at each x.
     """
-    usable = [row for row in rows if np.isfinite(row[y_column])]
-    if not usable:
+    places, values, groups = grouped(rows, x_column, y_column)
+    if not places:
         return []
-    places = sorted({row[x_column] for row in usable})
-    groups = [[row for row in usable if row[x_column] == place] for place in places]
-    values = [np.array([row[y_column] for row in group], dtype=float) for group in groups]
-    middle, low, high = (
-        np.array([pick(group) for group in values]) for pick in (np.median, np.min, np.max)
-    )
+    middle, low, high = spread(values)
     beside = {tag: np.array([group[0][tag] for group in groups]) for tag in tags}
-    beside["values"] = np.array([len(group) for group in values])
-    columns = {"x_column": x_column, "y_column": y_column}
-    return [Series(curve, np.array(places), middle, beside, low, high, **{**columns, **look})]
+    beside["values"] = np.array([len(group) for group in groups])
+    return [Series(curve, np.array(places), middle, beside, low, high, **look)]
 
 
 def medians(rows, x_column, y_column):
     """Return (x (place,) ascending, median of y_column (place,)) of the finite values."""
+    places, values, _ = grouped(rows, x_column, y_column)
+    return np.array(places), spread(values)[0]
+
+
+def grouped(rows, x_column, y_column):
+    """Return (ascending values of x_column, [values of y_column], [rows]) of finite values."""
     usable = [row for row in rows if np.isfinite(row[y_column])]
     places = sorted({row[x_column] for row in usable})
-    return np.array(places), np.array(
-        [np.median([row[y_column] for row in usable if row[x_column] == place]) for place in places]
-    )
+    groups = [[row for row in usable if row[x_column] == place] for place in places]
+    return places, [[row[y_column] for row in group] for group in groups], groups
+
+
+def spread(values):
+    """Return (median, smallest, largest) (place,) of [values of a place]."""
+    return tuple(np.array([pick(own) for own in values]) for pick in (np.median, np.min, np.max))

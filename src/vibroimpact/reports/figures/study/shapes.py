@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.geometry.sections import outer_width
 from vibroimpact.identify.linear.modes import first_mode_shape
 from vibroimpact.reports.figures.plot import Axis, Item, Mark, Panel, Plot, Series, Span, Text
 from vibroimpact.reports.figures.style import (
@@ -38,7 +37,7 @@ def figure_10_shapes(config, model, curves, rows):
     caption = (
         "Operational deflection shape around the main peak (first singular vector of the spectra"
         " above 1/25 of the peak), gap"
-        f" {gap_label(next(iter(curves)).gap_m, outer_width(config.structure.section))}. Top:"
+        f" {gap_label(config, next(iter(curves)).gap_m)}. Top:"
         f" displacement along {axis}, part in phase, against the arc length from one root to the"
         " other, median over seeds, by load; black: first mode of the linear tube, free (dashed)"
         " and in full bilateral contact (solid); grey: the supports. Bottom left: MAC with the"
@@ -49,13 +48,10 @@ def figure_10_shapes(config, model, curves, rows):
     found = {case: dataset for case, dataset in curves.items() if "ods_re" in dataset}
     there = {case.load_rms_N for case in found}
     loads = [load for load in spread_loads(rows, SHOWN_SHAPES) if load in there]
-    quadrature = [
-        {
-            "load_rms_N": case.load_rms_N,
-            "quadrature": np.linalg.norm(dataset["ods_im"]) / np.linalg.norm(dataset["ods_re"]),
-        }
-        for case, dataset in found.items()
-    ]
+    quadrature = []
+    for case, dataset in found.items():
+        share = np.linalg.norm(dataset["ods_im"]) / np.linalg.norm(dataset["ods_re"])
+        quadrature.append({"load_rms_N": case.load_rms_N, "quadrature": share})
     look = {"colour": BLUE, "marker": "o"}
     points = over_seeds(quadrature, "load_rms_N", "quadrature", "quadrature", **look)
     axes = Axis("load_rms_N", True), Axis("quadrature", low=0.0)
@@ -64,17 +60,9 @@ def figure_10_shapes(config, model, curves, rows):
         "mac": _likeness(found, loads),
         "quadrature": Panel(*axes, points, "part in quadrature"),
     }
-    return [
-        Plot(
-            "figure_10_shapes",
-            "Deflection shape against load",
-            caption,
-            panels,
-            [["shape", "shape"], ["mac", "quadrature"]],
-            (7.6, 6.2),
-            heights=(1.35, 1.0),
-        )
-    ]
+    rows = [["shape", "shape"], ["mac", "quadrature"]]
+    title, look = "Deflection shape against load", {"size": (7.6, 6.2), "heights": (1.35, 1.0)}
+    return Plot("figure_10_shapes", title, caption, panels, rows, **look)
 
 
 def support_places(model: Any) -> np.ndarray:
@@ -159,34 +147,30 @@ def figure_11_singular_values(config, curves):
     caption = (
         "Singular values of the spectra along the tube over the band above 1/25 of the main peak,"
         " divided by the first, gap"
-        f" {gap_label(next(iter(curves)).gap_m, outer_width(config.structure.section))}: median"
+        f" {gap_label(config, next(iter(curves)).gap_m)}: median"
         " and range over seeds. One value alone means that the whole band moves in one shape, as a"
         " linear tube does near a resonance; if others rise, in the transition, no single shape"
         " describes the motion."
     )
     items = []
+    x, y = "load_rms_N", "singular_value"
+    known = {case: dataset[y].values for case, dataset in curves.items() if y in dataset}
     for order, word in enumerate(ORDERS, start=1):
         values = [
-            {
-                "load_rms_N": case.load_rms_N,
-                "singular_value": dataset["singular_value"].values[order],
-                "order": order + 1,
-            }
-            for case, dataset in curves.items()
-            if "singular_value" in dataset
+            {x: case.load_rms_N, y: found[order], "order": order + 1}
+            for case, found in known.items()
         ]
         look = {"colour": GAP_COLOURS[order - 1], "marker": "os^D"[order - 1]}
-        look |= {"tags": ("order",), "label": f"{word} value"}
-        curve = f"value {order + 1}"
-        items += over_seeds(values, "load_rms_N", "singular_value", curve, **look)
+        look["label"] = f"{word} value"
+        items += over_seeds(values, x, y, f"value {order + 1}", ("order",), **look)
     low = min((np.min(item.low) for item in items), default=0.1)
     items.append(Mark("first value", "y", 1.0, width=1.0, label="first value"))
     panel = Panel(
-        Axis("load_rms_N", True),
-        Axis("singular_value", True, max(0.5 * low, LOWEST_VALUE)),
+        Axis(x, True),
+        Axis(y, True, max(0.5 * low, LOWEST_VALUE)),
         items,
         "singular values relative to the first",
         "no shape found",
     )
     title = "Size of the other shapes over the first"
-    return [Plot("figure_11_singular_values", title, caption, {"main": panel}, legend=5)]
+    return Plot("figure_11_singular_values", title, caption, {"main": panel}, legend=5)

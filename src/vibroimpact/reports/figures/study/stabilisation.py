@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.geometry.sections import outer_width
 from vibroimpact.identify.stabilisation import STABLE_DAMPING, STABLE_FREQUENCY
 from vibroimpact.reports.figures.plot import Axis, Mark, Panel, Plot, Series
 from vibroimpact.reports.figures.style import BLUE, GREEN, GREY, ORANGE, RED, gap_label
 
 from .cases_of_gap import first_seed, transition_load
-from .psd_table import driven_sensor
+from .psd_table import driven_sensor, inside
 
 NEAR = 1.6  # times the frequency of the main peak: the range of a chart to both sides
+ALL = ("frequency", "damping", "participation")  # the values of a pole that can be stable
 FEWEST_ORDERS = 5  # with a stable pole, which make a column
 # Kind of a pole: how it looks.
 KINDS = {
@@ -37,7 +37,7 @@ def figure_09_stabilisation(config, curves, spectra, rows):
     sensor = driven_sensor(config, config.identification.response_point)
     caption = (
         "Stabilisation charts of the output-only LSCF, first seed, gap"
-        f" {gap_label(next(iter(curves)).gap_m, outer_width(config.structure.section))}: poles"
+        f" {gap_label(config, next(iter(curves)).gap_m)}: poles"
         f" by model order over the PSD of displacement at {sensor} (grey, logarithmic, right axis)."
         " Poles near the main peak alone. A pole is stable when"
         f" frequency ({STABLE_FREQUENCY:.0%}), damping ({STABLE_DAMPING:.0%}) and participation"
@@ -55,7 +55,7 @@ def figure_09_stabilisation(config, curves, spectra, rows):
         near = (low, high) if np.isfinite(taken) else band
         panels[f"{load:g} N"] = chart_panel(fitted, spectrum, sensor, near, tags=True)
     title = "LSCF poles of the main peak, by model order"
-    return [Plot("figure_09_stabilisation", title, caption, panels, share="y", legend=4)]
+    return Plot("figure_09_stabilisation", title, caption, panels, share="y", legend=4)
 
 
 def pole_taken(fitted):
@@ -87,7 +87,7 @@ def _orders_of_pole(fitted):
     if not chosen:
         return 0
     own = np.abs(fitted["chart_frequency"].values / taken - 1.0) < STABLE_FREQUENCY
-    own &= _stable(fitted, "frequency", "damping", "participation")
+    own &= _stable(fitted, *ALL)
     return np.unique(fitted["chart_order"].values[own]).size
 
 
@@ -96,25 +96,21 @@ def chart_panel(fitted, spectrum, sensor, band_Hz, tags=False):
 
     tags: whether the damping ratio of each pole is in the CSV.
     """
-    low, high = band_Hz
     frequency = spectrum["frequency"].values
-    inside = (frequency >= low) & (frequency <= high)
-    psd = spectrum["psd_displacement_mean"].sel(sensor=sensor).values[inside]
+    kept = inside(frequency, band_Hz)
+    psd = spectrum["psd_displacement_mean"].sel(sensor=sensor).values[kept]
     look = {"colour": GREY, "width": 0.7, "alpha": 0.7}
-    behind = Series("PSD", frequency[inside], psd, right=True, **look)
+    behind = Series("PSD", frequency[kept], psd, right=True, **look)
     title = f"load {spectrum.attrs['load_rms_N']:.3g} N RMS"
-    axes = Axis("frequency_Hz", False, low, high), Axis("model_order")
+    axes = Axis("frequency_Hz", False, *band_Hz), Axis("model_order")
     right = Axis("psd_m2_per_Hz", True)
     if "chart_order" not in fitted:
         note = "no pole found near the main peak"
         return Panel(*axes, [behind], title, note, right)
     place, ratio = (fitted[f"chart_{name}"].values for name in ("frequency", "damping_ratio"))
     order = fitted["chart_order"].values.astype(float)
-    steady, stable = (
-        _stable(fitted, "frequency"),
-        _stable(fitted, "frequency", "damping", "participation"),
-    )
-    physical = (ratio > 0.0) & (place >= low) & (place <= high)
+    steady, stable = _stable(fitted, "frequency"), _stable(fitted, *ALL)
+    physical = (ratio > 0.0) & inside(place, band_Hz)
     items = [behind]
     for (name, look), kind in zip(KINDS.items(), (~steady, steady & ~stable, stable), strict=True):
         kept = kind & physical

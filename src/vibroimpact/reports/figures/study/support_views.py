@@ -16,6 +16,8 @@ SCALES = (10.0, 5.0, 2.0, 1.0)  # a gap to scale would be thinner than the lines
 WIDEST = 0.8  # largest drawn clearance, as a fraction of the tube's radius
 SHOWN_HOLES = 4
 LONGEST_TITLE = 24  # characters
+EDGE = {"color": BLACK, "linewidth": 1.2}
+PLATE = {"facecolor": GREY, "alpha": 0.55}
 
 
 def distinct_holes(config: Any) -> list[tuple[list[str], Any]]:
@@ -73,37 +75,13 @@ def support_side(sheet, axes, config, structure, gap, scale):
     for side, wall in walls.items():
         if np.isfinite(wall):
             left = min(side * wall, side * (reach / 1.1))
-            axes.add_patch(
-                Rectangle(
-                    (left * 1e3, -half * 1e3),
-                    (reach / 1.1 - wall) * 1e3,
-                    2 * half * 1e3,
-                    facecolor=GREY,
-                    alpha=0.55,
-                    edgecolor=BLACK,
-                    linewidth=0.6,
-                )
-            )
+            corner, look = (left, -half), {"edgecolor": BLACK, "linewidth": 0.6}
+            _box(axes, corner, reach / 1.1 - wall, 2 * half, **PLATE, **look)
             sheet.record(axes, "wall", across_m=side * wall)
-        sheet.line(
-            axes,
-            ("across_m", [side * radius] * 2),
-            ("along_m", [-2 * half, 2 * half]),
-            "edge of the tube",
-            color=BLACK,
-            linewidth=1.2,
-        )
-    axes.add_patch(
-        Rectangle(
-            (-radius * 1e3, -2 * half * 1e3),
-            2 * radius * 1e3,
-            4 * half * 1e3,
-            facecolor=PALE,
-            alpha=0.6,
-            edgecolor="none",
-            zorder=0,
-        )
-    )
+        x, y = ("across_m", [side * radius] * 2), ("along_m", [-2 * half, 2 * half])
+        sheet.line(axes, x, y, "edge of the tube", **EDGE)
+    look = {"facecolor": PALE, "alpha": 0.6, "edgecolor": "none", "zorder": 0}
+    _box(axes, (-radius, -2 * half), 2 * radius, 4 * half, **look)
     axes.axvline(0.0, color=GREY, linewidth=0.8, dashes=(8, 2, 1, 2))
     if support:
         _contact_points(sheet, axes, support, structure, half)
@@ -111,29 +89,23 @@ def support_side(sheet, axes, config, structure, gap, scale):
     axes.set_ylim(-1.6e3 * half, 3.4e3 * half)
 
 
+def _box(axes, corner, width, height, **look):
+    """Draw a rectangle from its lower left corner, lengths in m, on axes in mm."""
+    left, bottom = corner
+    axes.add_patch(Rectangle((left * 1e3, bottom * 1e3), width * 1e3, height * 1e3, **look))
+
+
 def _contact_points(sheet, axes, support, structure, half):
     """Draw the contact points of the first support, and write how many there are."""
     places = structure.contact.arc_length[structure.contact.support == 0]
     along = places - places.mean()
-    sheet.line(
-        axes,
-        ("across_m", np.zeros(along.size)),
-        ("along_m", along),
-        "contact points",
-        color=RED,
-        linestyle="none",
-        marker="o",
-        zorder=5,
-    )
+    x, y = ("across_m", np.zeros(along.size)), ("along_m", along)
+    dots = {"color": RED, "linestyle": "none", "marker": "o", "zorder": 5}
+    sheet.line(axes, x, y, "contact points", **dots)
     points = f"{support.points} contact point{'s' * (support.points > 1)}"
-    axes.text(
-        0,
-        shown("along_m", 2.05 * half),
-        f"{points},\n{number(np.sum(support.stiffness_N_per_m))} N/m in all",
-        ha="center",
-        va="bottom",
-        fontsize=8.5,
-    )
+    text = f"{points},\n{number(np.sum(support.stiffness_N_per_m))} N/m in all"
+    place = {"ha": "center", "va": "bottom", "fontsize": 8.5}
+    axes.text(0, shown("along_m", 2.05 * half), text, **place)
 
 
 def support_section(sheet, axes, config, support, gap, scale):
@@ -144,7 +116,6 @@ def support_section(sheet, axes, config, support, gap, scale):
     section = config.structure.section
     radius = 0.5 * outer_width(section)
     inside = radius - section.wall_thickness_m if section_kind(section) == "tube" else 0.0
-    hole = np.zeros((0, 2))
     reach = 1.5 * radius
     if support:
         own = support_gap(support, gap)
@@ -156,18 +127,12 @@ def support_section(sheet, axes, config, support, gap, scale):
         _hole(sheet, axes, hole, reach)
         _gap_arrows(axes, angle, radius, radius + scale * own, scale * offset)
     turn = np.linspace(0.0, 2.0 * np.pi, 121)
-    axes.add_patch(Circle((0, 0), radius * 1e3, facecolor=PALE, edgecolor="none"))
-    axes.add_patch(Circle((0, 0), inside * 1e3, facecolor="white", edgecolor="none"))
+    for size, colour in ((radius, PALE), (inside, "white")):
+        axes.add_patch(Circle((0, 0), size * 1e3, facecolor=colour, edgecolor="none"))
     curves = [("tube, outside", radius), ("tube, inside", inside)]
     for curve, size in curves if inside > 0.0 else curves[:1]:
-        sheet.line(
-            axes,
-            ("section_e1_m", size * np.cos(turn)),
-            ("section_e2_m", size * np.sin(turn)),
-            curve,
-            color=BLACK,
-            linewidth=1.2,
-        )
+        x, y = ("section_e1_m", size * np.cos(turn)), ("section_e2_m", size * np.sin(turn))
+        sheet.line(axes, x, y, curve, **EDGE)
     if support:
         text = f"gap\n{own * 1e3:.3g} mm"
         if len(distinct_holes(config)) == 1:
@@ -180,35 +145,16 @@ def support_section(sheet, axes, config, support, gap, scale):
 
 def _hole(sheet, axes, hole, reach):
     """Draw the plate with its hole; a side without stop is open to the edge of the picture."""
-    axes.add_patch(
-        Rectangle(
-            (-1e3 * reach, -1e3 * reach),
-            2e3 * reach,
-            2e3 * reach,
-            facecolor=GREY,
-            alpha=0.55,
-            edgecolor="none",
-        )
-    )
+    _box(axes, (-reach, -reach), 2 * reach, 2 * reach, **PLATE, edgecolor="none")
     axes.add_patch(Polygon(hole * 1e3, facecolor="white", edgecolor="none"))
-    sheet.line(
-        axes,
-        ("section_e1_m", hole[:, 0]),
-        ("section_e2_m", hole[:, 1]),
-        "obstacle",
-        color=RED,
-        linewidth=1.2,
-    )
+    x, y = ("section_e1_m", hole[:, 0]), ("section_e2_m", hole[:, 1])
+    sheet.line(axes, x, y, "obstacle", color=RED, linewidth=1.2)
 
 
 def _gap_arrows(axes, angle, radius, wall, offset):
     """Draw two arrows that meet in the gap, in the direction of the first stop or land."""
-    way = np.array([np.cos(angle), np.sin(angle)])
+    way, arrow = np.array([np.cos(angle), np.sin(angle)]), {"arrowstyle": "->", "linewidth": 1.6}
     ends = ((0.25 * radius + wall, wall, offset), (0.75 * radius, radius, 0.0 * offset))
     for start, end, shift in ends:
-        axes.annotate(
-            "",
-            (end * way + shift) * 1e3,
-            (start * way + shift) * 1e3,
-            arrowprops={"arrowstyle": "->", "color": ORANGE, "linewidth": 1.6},
-        )
+        tip, tail = (end * way + shift) * 1e3, (start * way + shift) * 1e3
+        axes.annotate("", tip, tail, arrowprops=arrow | {"color": ORANGE})

@@ -40,7 +40,7 @@ def timing(config, rows):
     )
     panel = Panel(*axes, items, legend="lower right")
     size = (7.6, 1.4 + 0.34 * len(rules))
-    return [Plot("timing", "Where the time goes", caption, {"main": panel}, size=size)]
+    return Plot("timing", "Where the time goes", caption, {"main": panel}, size=size)
 
 
 def _bars(rows, rules):

@@ -11,8 +11,10 @@ from matplotlib.patches import Polygon
 from vibroimpact.geometry.sections import outer_width, section_kind
 from vibroimpact.reduction.ritz_basis import eigenmodes, uncoupled_groups
 from vibroimpact.reports.figures.labels import spread_labels
+from vibroimpact.reports.figures.plot import in_rows
 from vibroimpact.reports.figures.sheet import Sheet
 from vibroimpact.reports.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PALE, RED, gap_label
+from vibroimpact.reports.figures.view import THICK_LINE, View
 from vibroimpact.structure.beam_elements import DOF_PER_NODE
 from vibroimpact.structure.contact.profiles import with_plain_profiles
 
@@ -35,34 +37,7 @@ CHARACTER_IN, LABEL_OFFSET_IN, FRONT_IN = 0.06, 0.2, 4.1
 # The point of a label at which the line to its place begins.
 RELATIVE = {"left": (0.0, 0.5), "right": (1.0, 0.5), "center": (0.5, 0.5)}
 FEW, FONT_PT, SMALL_FONT_PT = 6, 8.5, 7.0  # supports that are named in the usual size of letters
-OBLIQUE = (0.75, 0.45)  # how a unit away from the reader is seen: right and up
-
-
-def view_axes(positions):
-    """Return the indices (horizontal, vertical, depth) of the global axes for a front view.
-
-    positions (point, 3): m; the view is on the plane of their largest extents.
-    """
-    extent = np.ptp(positions, axis=0)
-    depth = int(np.argmin(extent))
-    horizontal, vertical = (axis for axis in range(3) if axis != depth)
-    return horizontal, vertical, depth
-
-
-def towards_reader(view):
-    """Return 1 if the depth axis of a view points towards the reader, -1 if away.
-
-    The global axes are right-handed: with x to the right and z up, y points away.
-    """
-    return 1 if (view[1] - view[0]) % 3 == 1 else -1
-
-
-def seen_obliquely(points, view):
-    """Return (point, 2) m: points (point, 3) as the reader sees them, distant ones to the right and
-    up.
-    """
-    away = -towards_reader(view) * np.asarray(points)[..., [view[2]]]
-    return np.asarray(points)[..., list(view[:2])] + away * OBLIQUE
+MIDDLE_LINE = {"color": GREY, "linewidth": 0.8, "dashes": (8, 2, 1, 2)}
 
 
 def figure_01_layout(config, structure):
@@ -78,15 +53,15 @@ def figure_01_layout(config, structure):
         " the drive; arrows are directions in the plane, a circle with a dot is a direction out of"
         " the plane, towards the reader, with a cross away from the reader. Right: a support from"
         " the side, and in section with the profile of its hole; the tube can move by the gap,"
-        f" {gap_label(gap, outer_width(section))} here if a support has none of its own,"
+        f" {gap_label(config, gap)} here if a support has none of its own,"
         f" before it touches; gaps are drawn {scale:g} times too large."
         f"{_holes_left_out(holes)} The tube is the one of the configuration, not the drawing of a"
         " rig."
     )
     panels = ["section"] if len(holes) < 2 else [f"section {n + 1}" for n in range(len(holes))]
     panels = panels[:SHOWN_HOLES]
-    pairs = [panels[n : n + 2] for n in range(0, len(panels), 2)]
-    beside = [["side"], panels] if len(panels) == 1 else [["side", "side"], *map(_filled, pairs)]
+    pairs = in_rows(panels, 2)
+    beside = [["side"], panels] if len(panels) == 1 else [["side", "side"], *pairs]
     sheet = Sheet(
         "figure_01_layout",
         "The tube, its supports, sensors and drive",
@@ -104,7 +79,7 @@ def figure_01_layout(config, structure):
             axes.set_xlabel("(mm)")
             axes.set_ylabel("")
     _front_view(sheet, sheet.axes["front"], config, structure)
-    return [sheet]
+    return sheet
 
 
 def _section_in_words(section):
@@ -122,11 +97,6 @@ def _section_in_words(section):
     return f"{drawn}, {outer_width(section) * 1e3:g} mm"
 
 
-def _filled(pair):
-    """Return a row of two panels, the second one empty if there is none."""
-    return pair if len(pair) == 2 else [*pair, "."]
-
-
 def _holes_left_out(holes):
     """Return a sentence on supports whose holes are not drawn."""
     if len(holes) <= SHOWN_HOLES:
@@ -138,59 +108,26 @@ def _front_view(sheet, axes, config, structure):
     """Draw the tube seen along the depth axis, with supports, points and sensors."""
     places = np.linspace(0.0, structure.centreline.length, 300)
     line = np.array([structure.centreline.position(place) for place in places])
-    view = view_axes(line)
-    columns = ["xyz"[axis] + "_m" for axis in view[:2]]
-    side = "towards" if towards_reader(view) > 0 else "away from"
-    axes.set_title(f"front view, to scale ({'xyz'[view[2]]} {side} the reader)")
-    sheet.line(
-        axes,
-        (columns[0], line[:, view[0]]),
-        (columns[1], line[:, view[1]]),
-        "centreline",
-        color=PALE,
-        linewidth=5,
-        solid_capstyle="butt",
-        zorder=1,
-        label="tube",
-    )
-    axes.plot(
-        line[:, view[0]], line[:, view[1]], color=GREY, linewidth=0.8, dashes=(8, 2, 1, 2), zorder=2
-    )
+    view = View.of(line)
+    side = "towards" if view.towards > 0 else "away from"
+    axes.set_title(f"front view, to scale ({'xyz'[view.depth]} {side} the reader)")
+    sheet.line(axes, *view.columns(line), "centreline", **THICK_LINE, label="tube")
+    axes.plot(*view.seen(line).T, **MIDDLE_LINE, zorder=2)
     labels = []
     fontsize = FONT_PT if len(config.supports) <= FEW else SMALL_FONT_PT
+    dots = {"color": RED, "linestyle": "none", "marker": ".", "markersize": 3.5, "zorder": 4}
     for index, support in enumerate(config.supports):
         points = structure.contact.position[structure.contact.support == index]
         labels.append(_draw_plate(axes, structure, points, view, support.name, fontsize))
-        sheet.line(
-            axes,
-            (columns[0], points[:, view[0]]),
-            (columns[1], points[:, view[1]]),
-            f"contact points of {support.name}",
-            color=RED,
-            linestyle="none",
-            marker=".",
-            markersize=3.5,
-            zorder=4,
-            label="contact points" if index == 0 else None,
-        )
+        dots["label"] = "contact points" if index == 0 else None
+        sheet.line(axes, *view.columns(points), f"contact points of {support.name}", **dots)
     ends = line[held_ends(config.structure)]
-    axes.plot(
-        *ends[:, view[:2]].T,
-        marker="s",
-        color=BLACK,
-        markersize=8,
-        zorder=5,
-        linestyle="none",
-        label="held end",
-    )
-    sheet.record(
-        axes,
-        "held ends",
-        **{column: ends[:, axis] for column, axis in zip(columns, view[:2], strict=True)},
-    )
-    labels += _draw_points(sheet, axes, config, structure, view, columns)
+    squares = {"marker": "s", "color": BLACK, "markersize": 8, "zorder": 5, "linestyle": "none"}
+    axes.plot(*view.seen(ends).T, **squares, label="held end")
+    sheet.record(axes, "held ends", **dict(view.columns(ends)))
+    labels += _draw_points(sheet, axes, config, structure, view)
     axes.set_aspect("equal", adjustable="datalim")
-    _leave_room_for_names(axes, line[:, list(view[:2])], labels)
+    _leave_room_for_names(axes, view.seen(line), labels)
     sheet.figure.legend(*axes.get_legend_handles_labels(), loc="outside lower left", ncols=5)
     spread_labels(sheet.figure, labels)
 
@@ -238,105 +175,63 @@ def held_ends(structure):
 
 def _draw_plate(axes, structure, points, view, name, fontsize):
     """Draw a support as a plate through which the tube passes; return the label of its name."""
-    middle = points.mean(axis=0)
-    tangent = structure.centreline.direction(structure.centreline.locate(middle, name))[
-        list(view[:2])
-    ]
+    tangent = _tangent(structure, points.mean(axis=0), name, view)
     across = np.array([-tangent[1], tangent[0]])
     reach = 0.055 * np.ptp(structure.nodes, axis=0).max()
-    half = max(0.5 * np.ptp(points @ np.eye(3)[:, list(view[:2])] @ tangent), 0.004)
-    middle = middle[list(view[:2])]
+    half = max(0.5 * np.ptp(view.seen(points) @ tangent), 0.004)
+    middle = view.seen(points.mean(axis=0))
     corners = [
         middle + s * reach * across + t * half * tangent
         for s, t in ((-1, -1), (1, -1), (1, 1), (-1, 1))
     ]
-    axes.add_patch(
-        Polygon(corners, facecolor=GREY, alpha=0.55, edgecolor=BLACK, linewidth=0.6, zorder=0)
-    )
-    centre = structure.nodes[:, list(view[:2])].mean(axis=0)
+    look = {"facecolor": GREY, "alpha": 0.55, "edgecolor": BLACK, "linewidth": 0.6}
+    axes.add_patch(Polygon(corners, **look, zorder=0))
+    centre = view.seen(structure.nodes).mean(axis=0)
     side = np.sign((middle - centre) @ across) or 1.0
     offset, alignment = _beside(side * across)
+    line = {"arrowstyle": "-", "color": GREY, "linewidth": 0.5, "shrinkA": 1.0, "shrinkB": 0.0}
     return axes.annotate(
         wrapped(name),
         middle + side * reach * across,
         xytext=5 * offset,
         textcoords="offset points",
         fontsize=fontsize,
-        arrowprops={
-            "arrowstyle": "-",
-            "color": GREY,
-            "linewidth": 0.5,
-            "relpos": RELATIVE[alignment["ha"]],
-            "shrinkA": 1.0,
-            "shrinkB": 0.0,
-        },
+        arrowprops={**line, "relpos": RELATIVE[alignment["ha"]]},
         **alignment,
     )
 
 
+def _tangent(structure, place, name, view):
+    """Return the direction (2,) of the tube at a place (3,), as it is seen."""
+    return view.seen(structure.centreline.direction(structure.centreline.locate(place, name)))
+
+
 def _beside(direction):
     """Return (offset (2,), {ha, va}) of a text next to a point, on the side of direction (2,)."""
+    right, up = np.sign(direction)
     if abs(direction[0]) > 0.4:
-        return np.array([np.sign(direction[0]), 0.0]), {
-            "ha": "left" if direction[0] > 0.0 else "right",
-            "va": "center",
-        }
-    return np.array([0.0, np.sign(direction[1])]), {
-        "ha": "center",
-        "va": "bottom" if direction[1] > 0.0 else "top",
-    }
+        return np.array([right, 0.0]), {"ha": "left" if right > 0.0 else "right", "va": "center"}
+    return np.array([0.0, up]), {"ha": "center", "va": "bottom" if up > 0.0 else "top"}
 
 
-def _draw_points(sheet, axes, config, structure, view, columns):
+def _draw_points(sheet, axes, config, structure, view):
     """Draw the named points with the directions of their sensors, and the drive; return the labels.
 
     Names at the same place share one label.
     """
-    labels, places = [], {}
-    for name, position in config.points.items():
-        place = structure.centreline.position(structure.centreline.locate(position, name))
-        key = next(
-            (other for other in places if np.allclose(other, place, atol=1e-6)), tuple(place)
-        )
-        places.setdefault(key, []).append(name)
-    centre = structure.nodes.mean(axis=0)
-    for index, (place, names) in enumerate(places.items()):
-        spot = np.array(place)[list(view[:2])]
-        sheet.line(
-            axes,
-            (columns[0], spot[:1]),
-            (columns[1], spot[1:]),
-            "points",
-            tags={"names": " ".join(names)},
-            color=BLUE,
-            marker="o",
-            markersize=6,
-            linestyle="none",
-            zorder=6,
-            label="named point" if index == 0 else None,
-        )
-        tangent = structure.centreline.direction(structure.centreline.locate(place, names[0]))[
-            list(view[:2])
-        ]
-        outward = spot - centre[list(view[:2])]
-        outward = outward - (outward @ tangent) * tangent
-        if np.linalg.norm(outward) < 1e-6:  # a straight tube has no outside: to its side
-            outward = np.array([tangent[1], -tangent[0]])
-        outward = outward / np.linalg.norm(outward)
-        lines = [wrapped(", ".join(names))]
-        if set(names) & set(config.record.sensors.points):
-            lines.append(f"sensors {', '.join(config.record.sensors.directions)}")
+    labels = []
+    dot = {"color": BLUE, "marker": "o", "markersize": 6, "linestyle": "none", "zorder": 6}
+    for index, (place, names) in enumerate(_names_by_place(config, structure)):
+        tags, label = {"names": " ".join(names)}, "named point" if index == 0 else None
+        sheet.line(axes, *view.columns(place), "points", tags=tags, **dot, label=label)
         if getattr(config.excitation, "point", None) in names:
-            others = ", ".join(name for name in names if name != config.excitation.point)
-            lines[0] = wrapped(others) if others else ""
-            lines.append(f"drive\n{wrapped(config.excitation.point)}")
-            _direction(axes, spot, np.array(config.excitation.direction), view)
-        offset, alignment = _beside(
-            -outward if abs(outward[0]) <= 0.4 else outward
-        )  # above and below a bend there is more room inside
+            _direction(axes, view, place, np.array(config.excitation.direction))
+        outward = _outward(structure, place, names[0], view)
+        # above and below a bend there is more room inside
+        offset, alignment = _beside(-outward if abs(outward[0]) <= 0.4 else outward)
         label = axes.annotate(
-            "\n".join(filter(None, lines)),
-            spot,
+            _words_of_point(config, names),
+            view.seen(place),
             xytext=13 * offset,
             textcoords="offset points",
             fontsize=8.5,
@@ -347,33 +242,54 @@ def _draw_points(sheet, axes, config, structure, view, columns):
     return labels
 
 
-def _direction(axes, spot, direction, view):
+def _names_by_place(config, structure):
+    """Return [(place (3,) on the tube, its names)] of the named points."""
+    found = []
+    for name, position in config.points.items():
+        place = structure.centreline.position(structure.centreline.locate(position, name))
+        names = next((own for at, own in found if np.allclose(at, place, atol=1e-6)), None)
+        if names is None:
+            found.append((place, [name]))
+        else:
+            names.append(name)
+    return found
+
+
+def _words_of_point(config, names):
+    """Return the label of a point: its names, its sensors, and whether it is driven."""
+    driven, sensors = getattr(config.excitation, "point", None), config.record.sensors
+    lines = [wrapped(", ".join(name for name in names if name != driven))]
+    if set(names) & set(sensors.points):
+        lines.append(f"sensors {', '.join(sensors.directions)}")
+    if driven in names:
+        lines.append(f"drive\n{wrapped(driven)}")
+    return "\n".join(filter(None, lines))
+
+
+def _outward(structure, place, name, view):
+    """Return the direction (2,) out of a bend, or to the side of a straight tube."""
+    tangent = _tangent(structure, place, name, view)
+    outward = view.seen(place) - view.seen(structure.nodes.mean(axis=0))
+    outward = outward - (outward @ tangent) * tangent
+    if np.linalg.norm(outward) < 1e-6:
+        outward = np.array([tangent[1], -tangent[0]])
+    return outward / np.linalg.norm(outward)
+
+
+def _direction(axes, view, place, direction):
     """Draw a force as an arrow; along the line of sight as a circle, with a dot if it points
     towards the reader and a cross if away.
     """
-    direction = direction / np.linalg.norm(direction)
-    inside = direction[list(view[:2])]
+    spot, direction = view.seen(place), direction / np.linalg.norm(direction)
+    inside = view.seen(direction)
     if np.linalg.norm(inside) > 0.5:
-        axes.annotate(
-            "",
-            spot + 0.12 * inside,
-            spot,
-            arrowprops={"arrowstyle": "-|>", "color": GREEN, "linewidth": 2},
-            zorder=8,
-        )
+        arrow = {"arrowstyle": "-|>", "color": GREEN, "linewidth": 2}
+        axes.annotate("", spot + 0.12 * inside, spot, arrowprops=arrow, zorder=8)
         return
-    axes.plot(
-        *spot,
-        marker="o",
-        markersize=12,
-        markerfacecolor="none",
-        markeredgecolor=GREEN,
-        markeredgewidth=2,
-        zorder=8,
-        linestyle="none",
-        label="drive, out of plane",
-    )
-    towards = direction[view[2]] * towards_reader(view) > 0.0
+    circle = {"marker": "o", "markersize": 12, "markerfacecolor": "none", "markeredgewidth": 2}
+    circle |= {"markeredgecolor": GREEN, "linestyle": "none", "zorder": 8}
+    axes.plot(*spot, **circle, label="drive, out of plane")
+    towards = direction[view.depth] * view.towards > 0.0
     axes.plot(*spot, marker="." if towards else "x", markersize=5, color=GREEN, zorder=9)
 
 
@@ -419,28 +335,23 @@ def figure_02_free_modes(config, structure):
         sharey=True,
     )
     nodes = structure.nodes
-    view = view_axes(nodes)
+    view = View.of(nodes)
+    squares = {"linestyle": "none", "marker": "s", "color": BLACK, "markersize": 5}
     for order, (axes, value, shape) in enumerate(
         zip(sheet.axes.values(), frequency, shapes, strict=False), start=1
     ):
-        across = np.sum(shape[:, view[2]] ** 2) > 0.5 * np.sum(shape**2)
+        across = np.sum(shape[:, view.depth] ** 2) > 0.5 * np.sum(shape**2)
         axes.set_title(f"{order} {'out of plane' if across else 'in plane'}, {value:.2f} Hz")
         look = {"color": BLUE if across else ORANGE, "linewidth": 2.2}
         _draw_mode(sheet, axes, (nodes, view), value, shape, look)
-        axes.plot(
-            *seen_obliquely(nodes[held_ends(config.structure)], view).T,
-            linestyle="none",
-            marker="s",
-            color=BLACK,
-            markersize=5,
-        )
+        axes.plot(*view.obliquely(nodes[held_ends(config.structure)]).T, **squares)
         _draw_supports_obliquely(axes, structure, view)
         axes.set_aspect("equal")
         axes.margins(0.1)
         axes.label_outer()
     for axes in list(sheet.axes.values())[len(frequency) :]:
         axes.set_visible(False)
-    return [sheet]
+    return sheet
 
 
 def _draw_mode(sheet, axes, seen, frequency, shape, look):
@@ -449,24 +360,19 @@ def _draw_mode(sheet, axes, seen, frequency, shape, look):
     displaced = nodes + SHAPE_SIZE * np.ptp(nodes, axis=0).max() * shape
     for index in np.linspace(0, len(nodes) - 1, 41).astype(int):
         pair = np.array([nodes[index], displaced[index]])
-        axes.plot(*seen_obliquely(pair, view).T, color=PALE, linewidth=0.8, zorder=1)
+        axes.plot(*view.obliquely(pair).T, color=PALE, linewidth=0.8, zorder=1)
     tags = {"frequency_Hz": frequency, **{f"shape_{x}": shape[:, i] for i, x in enumerate("xyz")}}
     for curve, points, tags_of, style in (
         ("at rest", nodes, {}, {"color": GREY, "linewidth": 1.0}),
         ("mode", displaced, tags, look),
     ):
-        across, up = seen_obliquely(points, view).T
+        across, up = view.obliquely(points).T
         sheet.line(axes, ("horizontal_m", across), ("vertical_m", up), curve, tags=tags_of, **style)
 
 
 def _draw_supports_obliquely(axes, structure, view):
     """Draw the middle of each support as a small cross."""
+    cross = {"marker": "P", "color": RED, "markersize": 6, "linestyle": "none"}
     for support in np.unique(structure.contact.support):
         middle = structure.contact.position[structure.contact.support == support].mean(axis=0)
-        axes.plot(
-            *seen_obliquely(middle, view),
-            marker="P",
-            color=RED,
-            markersize=6,
-            linestyle="none",
-        )
+        axes.plot(*view.obliquely(middle), **cross)

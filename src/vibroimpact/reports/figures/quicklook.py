@@ -11,19 +11,9 @@ from vibroimpact.campaign.force_kinds import BASE, FORCE, unit_kinds
 from vibroimpact.campaign.signals import Averaging, campaign_signals, transfer_band
 from vibroimpact.identify.spectra.welch import psd_statistics, segment_spectra
 from vibroimpact.io.units import UnitError, si_unit
-from vibroimpact.reports.figures.plot import Axis, Panel, Plot, Series, Span
-from vibroimpact.reports.figures.style import (
-    BLACK,
-    BLUE,
-    BROWN,
-    GREEN,
-    GREY,
-    ORANGE,
-    PINK,
-    RED,
-    SKY,
-    ordered_colours,
-)
+
+from .plot import Axis, Panel, Plot, Series, Span, in_rows
+from .style import BLACK, BLUE, BROWN, GREEN, GREY, ORANGE, PINK, RED, SKY, ordered_colours
 
 MOST_PANELS = 12
 ACROSS = 3
@@ -44,7 +34,7 @@ MARKERS = "os^Dv<>PX"
 
 
 def quicklook(campaign):
-    """Return [Plot] of a campaign Dataset, in SI units.
+    """Return the Plot of a campaign Dataset, in SI units.
 
     There is a panel for each of the first 12 forces and responses, and one of the levels.
     """
@@ -56,14 +46,10 @@ def quicklook(campaign):
             zip(measured.forces, unit_kinds(campaign), strict=True)
         )
     ]
+    units = map(str, campaign["channel_units"].values)
     panels += [
-        (
-            "response",
-            index,
-            name,
-            _shown_unit(str(campaign["channel_units"].values[index]), measured.kinds[index]),
-        )
-        for index, name in enumerate(measured.channels)
+        ("response", index, name, _shown_unit(unit, measured.kinds[index]))
+        for index, (name, unit) in enumerate(zip(measured.channels, units, strict=True))
     ]
     left_out, panels = panels[MOST_PANELS:], panels[:MOST_PANELS]
     colours = ordered_colours(
@@ -74,20 +60,16 @@ def quicklook(campaign):
         f"{role} {name}": _spectra(measured, (role, index, name, unit), colours, band)
         for role, index, name, unit in panels
     }
-    keys = [*drawn, "levels"]
-    keys += ["."] * (-len(keys) % ACROSS)
-    rows = [keys[row : row + ACROSS] for row in range(0, len(keys), ACROSS)]
-    return [
-        Plot(
-            "quicklook",
-            _title(measured),
-            _caption(campaign, measured, panels, left_out),
-            {**drawn, "levels": _levels(measured)},
-            rows,
-            (12.0, 0.9 + 2.5 * len(rows)),
-            legend=4,
-        )
-    ]
+    rows = in_rows([*drawn, "levels"], ACROSS)
+    return Plot(
+        "quicklook",
+        _title(measured),
+        _caption(campaign, left_out),
+        {**drawn, "levels": _levels(measured)},
+        rows,
+        (12.0, 0.9 + 2.5 * len(rows)),
+        legend=4,
+    )
 
 
 def _drive(measured):
@@ -104,7 +86,7 @@ def _title(measured):
     )
 
 
-def _caption(campaign, measured, panels, left_out):
+def _caption(campaign, left_out):
     source = str(campaign.attrs.get("source", "")) or "no source given"
     hidden = f" Not shown: {', '.join(name for _, _, name, _ in left_out)}." if left_out else ""
     return (
@@ -166,10 +148,9 @@ def _binned(values, rate, band):
     first = max(spectra.frequency[1], (band[0] if band else spectra.frequency[1]) / 3.0)
     place = np.floor(np.log2(np.maximum(spectra.frequency, 1e-9) / first) * BINS_PER_OCTAVE)
     kept = spectra.frequency >= first
-    numbers, inverse, counts = np.unique(place[kept], return_inverse=True, return_counts=True)
-    return np.bincount(inverse, spectra.frequency[kept]) / counts, np.maximum(
-        np.bincount(inverse, psd[kept]) / counts, np.finfo(float).tiny
-    )
+    _, inverse, counts = np.unique(place[kept], return_inverse=True, return_counts=True)
+    middle, mean = (np.bincount(inverse, of[kept]) / counts for of in (spectra.frequency, psd))
+    return middle, np.maximum(mean, np.finfo(float).tiny)
 
 
 def _levels(measured):
