@@ -95,3 +95,20 @@ def test_measured_channel_is_as_noisy_as_what_is_simulated():
     largest = np.nanstd(signals.response[1, 1])
     assert signals.noise[1] == pytest.approx(1.0e-6 * largest, rel=0.01)
     assert np.nanstd(signals.response[0, 1]) == pytest.approx(signals.noise[1], rel=0.02)
+
+
+def test_noise_of_a_record_follows_the_range_of_its_recorder():
+    """White noise of one per cent of each record, without a statement of it."""
+    dataset = campaign(RATE).drop_vars("noise_floor_rms", errors="ignore")
+    for name in ("force", "response"):
+        dataset[name][1] *= 20.0
+    rng, clean = np.random.default_rng(8), dataset["response"].values
+    level = np.nanstd(clean, axis=-1)
+    dataset["response"].values = clean + 0.01 * level[..., None] * rng.standard_normal(clean.shape)
+    signals = signals_of(dataset)
+    lowest = int(np.argmin(signals.load))
+    assert signals.record_noise[lowest] == pytest.approx(signals.noise)
+    assert signals.record_noise == pytest.approx(0.01 * level, rel=0.15)
+    stated = campaign(RATE)
+    stated["noise_floor_rms"][:] = 0.1
+    assert (signals_of(stated).record_noise == signals_of(stated).noise).all()

@@ -51,15 +51,17 @@ def floor_of(comparison: Comparison, best: Fit) -> tuple[float, float]:
     return level, mean_log_power(own, found.lines)
 
 
-def _noise(comparison: Comparison, samples: int, rng: np.random.Generator) -> np.ndarray:
-    """Return (channel, sample) m: noise of the channels, as a displacement."""
+def _noise(
+    comparison: Comparison, record: int, samples: int, rng: np.random.Generator
+) -> np.ndarray:
+    """Return (channel, sample) m: noise of the channels in a record, as a displacement."""
     signals, (low, high) = comparison.signals, comparison.band
     rate = comparison.rates.sampling
     frequency = np.fft.rfftfreq(samples, 1.0 / rate)
     inside = (frequency >= low) & (frequency <= high)
     omega = 2.0 * np.pi * np.where(inside, frequency, 1.0)
     # white over the range to half the sampling frequency of the campaign
-    level = signals.noise * np.sqrt(rate / signals.rate) * comparison.structure.scale
+    level = signals.record_noise[record] * np.sqrt(rate / signals.rate) * comparison.structure.scale
     white = level[:, None] * rng.standard_normal((len(level), samples))
     lines = np.fft.rfft(white, axis=-1) * inside / (1j * omega) ** orders(signals.kinds)[:, None]
     return np.fft.irfft(lines, samples, axis=-1)
@@ -87,7 +89,7 @@ def _played(
     held = bench.measures_motion
     out = []
     for each, own in zip(bench.stretches, motion, strict=True):
-        own = own * chain.gain[:, None] + _noise(comparison, own.shape[1], rng)
+        own = own * chain.gain[:, None] + _noise(comparison, each.record, own.shape[1], rng)
         fine = signal.resample_poly(own, up, 1, axis=-1, window=WINDOW, padtype="edge")
         # the motion of a stretch begins one step before its first sample
         count = len(each.motion)

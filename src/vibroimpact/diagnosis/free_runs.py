@@ -36,7 +36,7 @@ class FreeRuns:
 
     frequency (line,): Hz. measured (record, channel, line); before, after (record, seed, channel,
     line): one-sided PSD in the unit of the channel squared per Hz; NaN of a run that failed.
-    noise (channel,): PSD.
+    noise (record, channel): PSD.
     """
 
     frequency: np.ndarray
@@ -50,7 +50,7 @@ def free_runs(structure: Structure, signals: Signals, after: Point | None) -> Fr
     """Return the FreeRuns of the model as given and of a Point, None if nothing is completed."""
     frequency, measured = _psd(signals.response[:, None], signals)
     _, before = _psd(_simulated(structure, signals, Point()), signals)
-    noise = signals.noise**2 / (0.5 * signals.rate)
+    noise = signals.record_noise**2 / (0.5 * signals.rate)
     runs = FreeRuns(frequency, measured[:, 0], before, before, noise)
     return runs if after is None else with_after(runs, structure, signals, after)
 
@@ -206,13 +206,13 @@ def _in_bands(runs, signals):
         mean = np.stack([psd[..., low:high].mean(axis=-1) for low, high in bands], axis=-1)
         return 10.0 * np.log10(np.maximum(mean, np.finfo(float).tiny))
 
-    sensed = runs.noise[:, None]  # the sensors would add it to the simulated response
+    sensed = runs.noise[:, None, :, None]  # the sensors would add it to the simulated response
     out = {
         "measured": power(runs.measured),
         "before": power(runs.before + sensed),
         "after": power(runs.after + sensed),
     }
-    noise = 10.0 * np.log10(np.maximum(runs.noise, np.finfo(float).tiny))[:, None]
+    noise = 10.0 * np.log10(np.maximum(runs.noise, np.finfo(float).tiny))[..., None]
     known = out["measured"] > noise + ABOVE_NOISE_DB
     for name in ("before", "after"):
         known &= np.isfinite(out[name]).all(axis=1)

@@ -31,6 +31,7 @@ from .measurement.signals import Signals
 from .search import Hypothesis, Search, changes, jackknife
 
 RUN_FREE, PER_EFFECT = 30, 4  # points, in all and of one effect
+OPPOSED = 0.5  # in mean log power: with a larger holding force, weaker values are not tried either
 SCANNED = 2  # of them, whose first value is changed by FACTORS
 RECORDS = 2  # those whose spectra are farthest off
 FACTORS = (0.1, 0.3, 3.0, 10.0)
@@ -137,9 +138,9 @@ def _farthest(comparison: Comparison, runs: FreeRuns) -> list[int]:
 
 
 def _candidates(comparison: Comparison, searched: Search, base: Hypothesis) -> list[Point]:
-    """Return points with one term more than a base that the holding force does not contradict: as
-    they were fitted, and of each effect in turn the best ones of the screening, far from neutral
-    ones first. An effect that the holding force does not show is strong, if it is there.
+    """Return points with one term more than a base: as they were fitted, and of each effect in turn
+    the best ones of the screening, far from neutral ones first. An effect that the holding force
+    does not show is strong, if it is there.
     """
     known, sizes = set(base.point.terms), comparison.sizes
     chosen = {
@@ -149,7 +150,7 @@ def _candidates(comparison: Comparison, searched: Search, base: Hypothesis) -> l
     }
     bench, names = comparison.screened(), {term.effect_id for term in known}
     [lines] = holding_lines(bench, [base.point])
-    least = -LEAST_GAIN * effective_lines(bench, lines)
+    least = -OPPOSED * effective_lines(bench, lines)
     screened = searched.screened.get(base.point.name, ())
     queues: dict[str, list[Term]] = {}
     for each in screened or searched.screened.get(searched.nothing.point.name, ()):

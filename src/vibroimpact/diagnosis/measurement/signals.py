@@ -21,6 +21,7 @@ BELOW, LEAST_LINES, MOST_LINES = 5.0, 40, 500
 MEDIAN_SCATTER = 1.77
 SEGMENT_S = 4.0
 RESOLUTION = 1.0e-6  # of a channel's largest response: no recorder resolves less of its range
+STOPPED = 0.975  # of half the sampling frequency, from which the anti-alias filter stops a signal
 SAME_LOAD = 9  # decimals of a load in N: loads equal to so many are one level
 # sigma: the least of some dozens of parts lies two below their mean, and none far above it
 ALIKE = 4.0
@@ -35,7 +36,8 @@ class Signals:
     rate: sampling frequency, Hz. band_Hz: the excited band. kinds, names (channel,).
     gap (record,): m. load (record,): RMS of the first force, in load_unit.
     split, record_names (record,).
-    noise (channel,): RMS of white measuring noise over the range to half the sampling frequency.
+    noise (channel,): RMS of white measuring noise over the range to half the sampling frequency, at
+    the lowest load. record_noise (record, channel): the same of each record.
     from_rest: whether records begin at rest.
     """
 
@@ -50,6 +52,7 @@ class Signals:
     split: np.ndarray
     record_names: tuple[str, ...]
     noise: np.ndarray
+    record_noise: np.ndarray
     from_rest: bool
     load_unit: str = "N"
 
@@ -98,6 +101,7 @@ def signals_of(campaign: xr.Dataset) -> Signals:
         split=np.array(measured.splits),
         record_names=tuple(measured.records),
         noise=noise,
+        record_noise=_of_records(campaign, response, noise, lowest, rate),
         from_rest=str(campaign.attrs.get("start_up", "rest")) == "rest",
         load_unit=shown_load_unit(campaign),
     )
@@ -139,6 +143,31 @@ def noise_of(
     least = np.min(density * np.exp(ALIKE * MEDIAN_SCATTER / np.sqrt(lines))[:, None], axis=0)
     share = lines[:, None] * (density <= least)
     return np.sqrt(np.sum(share * density, axis=0) / np.sum(share, axis=0) / np.sum(window**2))
+
+
+def _of_records(
+    campaign: xr.Dataset, response: np.ndarray, noise: np.ndarray, lowest: int, rate: float
+) -> np.ndarray:
+    """Return (record, channel) RMS of the noise of each record, as stated by the campaign.
+
+    A recorder whose range follows the level has noise that does. Without a statement, it is read
+    where the anti-alias filter stops the signal, and lies between that of the lowest load and this
+    times the level.
+    """
+    if "noise_floor_rms" in campaign:
+        return np.tile(noise, (len(response), 1))
+    power = np.nanmean(response**2, axis=-1)
+    level = np.sqrt(power / np.maximum(power[lowest], np.finfo(float).tiny))
+    return np.clip([_stopped(own, rate) for own in response], noise, noise * np.maximum(level, 1.0))
+
+
+def _stopped(response, rate):
+    """Return (channel,) RMS of white noise with the spectral density of a record above STOPPED."""
+    response = response[:, np.isfinite(response).all(axis=0)]
+    window = np.hanning(response.shape[-1])
+    frequency = np.fft.rfftfreq(len(window), 1.0 / rate)
+    lines = np.fft.rfft(window * response, axis=-1)[:, frequency > STOPPED * 0.5 * rate]
+    return np.sqrt(np.median(np.abs(lines) ** 2, axis=-1) / np.log(2.0) / np.sum(window**2))
 
 
 def _unexplained(force, response, rate, band):
