@@ -88,7 +88,7 @@ def covered(structure: Tube, excitation: Excitation, flow: Flow) -> Problems:
     for velocity in flow.velocity_m_per_s if flow.turbulence.kind == "dimensionless" else ():
         moved = spectrum.model_copy(update={"velocity_m_per_s": velocity})
         own = excitation.model_copy(update={"spectrum": moved})
-        for _, _, text in points_of_spectrum(structure, own):
+        for each in points_of_spectrum(structure, own):
             yield Problem(
-                "flow.velocity_m_per_s", f"is too far for the spectrum, which {text}", velocity
+                "flow.velocity_m_per_s", f"is too far for the spectrum, which {each.text}", velocity
             )

@@ -17,24 +17,26 @@ import numpy as np
 
 from vibroimpact.diagnosis.verdict.misfit import excess
 
-from .bench import effective_lines, holding_lines, misfit
+from .bench import Bench, effective_lines, holding_lines, misfit
 from .catalogue import far_terms
 from .comparison import Comparison
 from .completed import NINETY_SD
 from .constants import FREE_RIVAL_DB, LEAST_GAIN, PARTLY
 from .coordinates import Coordinate, effect_coordinates, to_point, to_vector
 from .decision import Decision, conclusion, far_off
-from .explanations import Point, Term
+from .explanations import Point
 from .free_runs import FreeRuns, distance, with_after
 from .gauss_newton import Fit
 from .measurement.signals import Signals
+from .screening import Screened
 from .search import Hypothesis, Search, changes, jackknife
 
 RUN_FREE, PER_EFFECT = 30, 4  # points, in all and of one effect
-OPPOSED = 0.5  # in mean log power: with a larger holding force, weaker values are not tried either
-SCANNED = 2  # of them, whose first value is changed by FACTORS
+SCANNED = 2  # of the nearest, whose first value is changed by FACTORS
 RECORDS = 2  # those whose spectra are farthest off
 FACTORS = (0.1, 0.3, 3.0, 10.0)
+WEAKER = (0.3,)  # of the first value, where the holding force opposes a point
+OPPOSED = 0.5  # in mean log power: more than a weaker value mends
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +111,9 @@ def _closest(
     records = _farthest(comparison, runs)
     away = distance(runs, comparison.signals, records)["after_dB"]
     trials = _run(comparison, _candidates(comparison, searched, base), runs, records)
-    scanned = [point for trial in trials[:SCANNED] for point in _scan(comparison, trial.point)]
+    scanned = [
+        point for trial in trials[:SCANNED] for point in _scan(comparison, trial.point, FACTORS)
+    ]
     trials = sorted([*trials, *_run(comparison, scanned, runs, records)], key=_away)
     trials = _not_contradicted(comparison, base, trials)
     best: dict[tuple[str, ...], _Trial] = {}
@@ -139,33 +143,46 @@ def _farthest(comparison: Comparison, runs: FreeRuns) -> list[int]:
 
 def _candidates(comparison: Comparison, searched: Search, base: Hypothesis) -> list[Point]:
     """Return points with one term more than a base: as they were fitted, and of each effect in turn
-    the best ones of the screening, far from neutral ones first. An effect that the holding force
-    does not show is strong, if it is there.
+    the best ones of the screening, far from neutral ones first, or weaker ones where the holding
+    force opposes these. An effect that it does not show is strong, if it is there.
     """
-    known, sizes = set(base.point.terms), comparison.sizes
-    chosen = {
-        each.point.name: each.point
+    known, sizes = {term.effect_id for term in base.point.terms}, comparison.sizes
+    fitted = [
+        each.point
         for each in searched.hypotheses
         if len(each.point.terms) > len(known) and {*base.ids} <= {*each.ids}
-    }
-    bench, names = comparison.screened(), {term.effect_id for term in known}
-    [lines] = holding_lines(bench, [base.point])
-    least = -OPPOSED * effective_lines(bench, lines)
+    ]
+    bench = comparison.screened()
+    [before] = holding_lines(bench, [base.point])
+    lines = effective_lines(bench, before)
+    queues: dict[str, list[Screened]] = {}
     screened = searched.screened.get(base.point.name, ())
-    queues: dict[str, list[Term]] = {}
     for each in screened or searched.screened.get(searched.nothing.point.name, ()):
-        term = each.point.terms[-1]
-        if each.gain > least and term.effect_id not in names:
-            queues.setdefault(term.effect_id, []).append(term)
-    ordered = [sorted(own, key=lambda term: not _is_far(term, sizes)) for own in queues.values()]
-    for turn in zip_longest(*(own[:PER_EFFECT] for own in ordered)):
-        for point in (base.point.beside(term) for term in turn if term is not None):
-            chosen.setdefault(f"{point.name} {point.terms[-1].values}", point)
-    return list(chosen.values())[:RUN_FREE]
+        effect = each.point.terms[-1].effect_id
+        if each.gain > -OPPOSED * lines and effect not in known:
+            queues.setdefault(effect, []).append(each)
+    ordered = [sorted(own, key=lambda each: not _is_far(each, sizes)) for own in queues.values()]
+    turns = zip_longest(*(own[:PER_EFFECT] for own in ordered))
+    chosen = [each for turn in turns for each in turn if each is not None][:RUN_FREE]
+    points = [base.point.beside(each.point.terms[-1]) for each in chosen]
+    opposed = [each.gain < -LEAST_GAIN * lines for each in chosen]
+    weaker = [point for point, less in zip(points, opposed, strict=True) if less]
+    weaker = [own for point in weaker for own in _scan(comparison, point, WEAKER)]
+    found, highest = holding_lines(bench, weaker), _highest(bench, before)
+    allowed = [own for own, at in zip(weaker, found, strict=True) if misfit(bench, at) < highest]
+    return [*fitted, *(p for p, less in zip(points, opposed, strict=True) if not less), *allowed]
 
 
-def _is_far(term: Term, sizes: Mapping[str, float]) -> bool:
-    """Return whether a term is a trial far from doing nothing."""
+def _highest(bench: Bench, lines: np.ndarray) -> float:
+    """Return the misfit above which an addition contradicts the holding force; lines: of the
+    base.
+    """
+    return misfit(bench, lines) + LEAST_GAIN * effective_lines(bench, lines)
+
+
+def _is_far(screened: Screened, sizes: Mapping[str, float]) -> bool:
+    """Return whether the last term of a screened point is a trial far from doing nothing."""
+    term = screened.point.terms[-1]
     return term in far_terms(term.effect, term.location, sizes)
 
 
@@ -192,7 +209,7 @@ def _not_contradicted(
     """Return the trials with which the holding force is no larger than with their base."""
     bench = comparison.fitted()
     before, *after = holding_lines(bench, [base.point, *(t.point for t in trials)])
-    highest = misfit(bench, before) + LEAST_GAIN * effective_lines(bench, before)
+    highest = _highest(bench, before)
     return [t for t, own in zip(trials, after, strict=True) if misfit(bench, own) < highest]
 
 
@@ -210,12 +227,12 @@ def _first_value(point: Point, rows: Sequence[Coordinate]) -> int:
     )
 
 
-def _scan(comparison: Comparison, point: Point) -> list[Point]:
-    """Return a Point with other values of the first parameter of its last term."""
+def _scan(comparison: Comparison, point: Point, factors: Sequence[float]) -> list[Point]:
+    """Return a Point with the first parameter of its last term multiplied by factors."""
     rows = effect_coordinates(point.terms, comparison.sizes)
     x, at = to_vector(point, rows), _first_value(point, rows)
     out = []
-    for factor in FACTORS:
+    for factor in factors:
         moved = x.copy()
         value = factor * rows[at].to_value(x[at])
         moved[at] = np.clip(rows[at].from_value(value), rows[at].low, rows[at].high)

@@ -68,7 +68,7 @@ def free_runs(before: Trial, after: Trial, records: Records) -> FreeRuns:
     first = runs(before)
     last = first if after is before else runs(after)
     measured = psd([level.response[:, lines] for level, lines in own])
-    return FreeRuns(grids[0], measured, first, last, psd(scatter).mean(axis=(0, 2)))
+    return FreeRuns(grids[0], measured, first, last, psd(scatter).mean(axis=2))
 
 
 @dataclass(frozen=True, eq=False)
