@@ -1,5 +1,7 @@
 """The evidence of a diagnosis, against the independent code and its contact forces."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.signal import resample_poly
@@ -7,13 +9,14 @@ from scipy.signal import resample_poly
 import vibroimpact as vi
 from tests.support.contact_truth import contact_campaign
 from vibroimpact.diagnosis.comparison import Comparison
-from vibroimpact.diagnosis.evidence import evidence_of
+from vibroimpact.diagnosis.evidence import _modelled, evidence_of
 from vibroimpact.diagnosis.explanations import Point, Structure, Term
 from vibroimpact.diagnosis.measurement.signals import signals_of
 from vibroimpact.io.records import read_record, write_record
 
 LEVELS = ((0.5, 1.3, "fit"), (8.0, 1.3, "fit"), (12.0, 1.3, "holdout"))
 DURATION_S = 6.0
+NO_PLACES = SimpleNamespace(names=())
 WRONG = Point((Term("gap", "all", (0.6,)),))  # a clearance that the structure does not have
 
 
@@ -65,6 +68,15 @@ def test_the_law_shows_where_contact_begins(evidence):
     pressed = np.abs(force) > 0.3 * np.abs(force).max()
     assert 0.75 * gap < np.median(np.abs(motion[pressed])) < 1.4 * gap
     assert np.mean(force[pressed] * motion[pressed] < 0.0) > 0.95  # obstacles push back
+
+
+def test_a_place_that_the_given_model_lacks_is_empty(comparison):
+    """A beam without a support, and the same with a stop."""
+    bench = comparison.fitted()
+    none = np.zeros((2, 0, bench.schedule.samples))
+    bare = SimpleNamespace(bench=bench, at_places=lambda stretch: none, places=NO_PLACES)
+    found = _modelled(comparison.band, bare, SimpleNamespace(names=("stop",)), [0, 1])
+    assert found.shape[:3] == (2, 2, 1) and np.isnan(found).all()
 
 
 def test_the_right_model_needs_less_holding_force(evidence):

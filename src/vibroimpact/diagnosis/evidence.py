@@ -245,7 +245,7 @@ def _modelled(band, state: HeldState, places: Places, chosen: list[int]) -> np.n
     """
     rows = [in_band(state.bench, state.at_places(number), band, 0) for number in chosen]
     found = np.stack(rows, axis=1).astype(np.float32)
-    lacking = np.full_like(found[:, :, :1], np.nan)
+    lacking = np.full((*found.shape[:2], 1, found.shape[-1]), np.nan, found.dtype)
     own = {name: number for number, name in enumerate(state.places.names)}
     return np.concatenate([found, lacking], axis=2)[:, :, [own.get(n, -1) for n in places.names]]
 
