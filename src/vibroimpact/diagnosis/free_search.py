@@ -21,9 +21,9 @@ from .bench import Bench, effective_lines, holding_lines, misfit
 from .catalogue import far_terms
 from .comparison import Comparison
 from .completed import NINETY_SD
-from .constants import FREE_RIVAL_DB, LEAST_GAIN, PARTLY
+from .constants import FREE_RIVAL_DB, LEAST_GAIN, NULL_GAIN, PARTLY
 from .coordinates import Coordinate, effect_coordinates, to_point, to_vector
-from .decision import Decision, conclusion, far_off
+from .decision import LEAST_APART, Decision, conclusion, far_off
 from .explanations import Point
 from .free_runs import FreeRuns, distance, with_after
 from .gauss_newton import Fit
@@ -83,9 +83,12 @@ def free_search(
     if not best:
         return decision, given if nothing else runs
     closed = chance * best[0].closed
-    weight = np.exp([(best[0].away - trial.away) / FREE_RIVAL_DB for trial in best])
     found = [_hypothesis(comparison, searched.nothing, base, each) for each in best]
-    ranked = tuple(zip(found, map(float, closed * weight / weight.sum()), strict=True))
+    odds = np.array([-each.away / FREE_RIVAL_DB for each in best])
+    odds += np.array([max(each.worth, LEAST_APART) / NULL_GAIN for each in found])
+    weight = np.exp(odds - odds.max())
+    pairs = zip(found, map(float, closed * weight / weight.sum()), strict=True)
+    ranked = tuple(sorted(pairs, key=lambda pair: -pair[1]))
     decision = replace(
         decision,
         verdict=conclusion(ranked),
@@ -95,7 +98,7 @@ def free_search(
         by_free_runs=True,
         surely_off=False,
     )
-    return decision, with_after(runs, comparison.structure, signals, found[0].point)
+    return decision, with_after(runs, comparison.structure, signals, ranked[0][0].point)
 
 
 def _closest(
@@ -120,6 +123,9 @@ def _closest(
     for trial in trials:
         if trial.closed >= PARTLY:
             best.setdefault(tuple(trial.point.ids), trial)
+    for ids, trial in list(best.items()):  # what an effect adds to others must be seen
+        if any(set(k) < set(ids) and o.away < trial.away + FREE_RIVAL_DB for k, o in best.items()):
+            del best[ids]
     for trial in list(best.values())[:3]:
         log(f"{trial.point.name}: spectra {away:.1f} dB off without it, {trial.away:.1f} with it")
     return [replace(trial, reach=_reach(comparison, trial, trials)) for trial in best.values()]
