@@ -11,7 +11,7 @@ from vibroimpact.diagnosis import free_runs as module
 from vibroimpact.diagnosis.coordinates import effect_coordinates
 from vibroimpact.diagnosis.decision import decide
 from vibroimpact.diagnosis.explanations import Point, Structure, Term
-from vibroimpact.diagnosis.free_runs import free_runs
+from vibroimpact.diagnosis.free_runs import free_runs, surely_off
 from vibroimpact.diagnosis.free_search import far, free_search
 from vibroimpact.diagnosis.gauss_newton import Fit
 from vibroimpact.diagnosis.measurement.usable import Refused
@@ -63,9 +63,12 @@ def test_free_runs_add_an_effect_to_one_that_leaves_spectra_off(played):
     known = replace(searched(*TRIED), hypotheses=(base,))
     named = replace(decide(known, 5.0, 5.0), surely_off=True)
     runs = replace(runs, after=runs.before.copy())
-    found, _ = free_search(comparison, known, named, runs)
+    found, after = free_search(comparison, known, named, runs)
     assert named.best.ids == ("gap",) and found.verdict == "named"
-    assert found.best.point.ids == ["gap", "quadratic_drag"] and not found.surely_off
+    point, signals = found.best.point, comparison.signals
+    assert point.ids == ["gap", "quadratic_drag"]
+    off = surely_off(after, comparison.structure, signals, point, range(len(signals.load)))
+    assert found.surely_off == bool(off)
     near = replace(named, surely_off=False)
     assert free_search(comparison, known, near, runs) == (near, runs)
 

@@ -25,7 +25,7 @@ from .constants import FREE_RIVAL_DB, LEAST_GAIN, NULL_GAIN, PARTLY
 from .coordinates import Coordinate, effect_coordinates, to_point, to_vector
 from .decision import LEAST_APART, Decision, conclusion, far_off
 from .explanations import Point
-from .free_runs import FreeRuns, distance, with_after
+from .free_runs import FreeRuns, distance, surely_off, with_after
 from .gauss_newton import Fit
 from .measurement.signals import Signals
 from .screening import Screened
@@ -96,9 +96,11 @@ def free_search(
         nothing=0.0,
         something_else=1.0 - closed,
         by_free_runs=True,
-        surely_off=False,
     )
-    return decision, with_after(runs, comparison.structure, signals, ranked[0][0].point)
+    structure, point = comparison.structure, ranked[0][0].point
+    runs = with_after(runs, structure, signals, point)
+    off = surely_off(runs, structure, signals, point, range(len(signals.load)))
+    return replace(decision, surely_off=bool(off)), runs
 
 
 def _closest(
@@ -252,10 +254,8 @@ def _hypothesis(
     """Return the Hypothesis of a trial in addition to a base, compared with nothing."""
     rows = effect_coordinates(own.point.terms, comparison.sizes)
     x, at = to_vector(own.point, rows), _first_value(own.point, rows)
-    deviation, known = (
-        np.ones(len(rows)),
-        len(effect_coordinates(base.point.terms, comparison.sizes)),
-    )
+    known = len(effect_coordinates(base.point.terms, comparison.sizes))
+    deviation = np.ones(len(rows))
     if known:
         deviation[:known] = base.fit.deviation[:known]
     deviation[at] = own.reach / NINETY_SD
