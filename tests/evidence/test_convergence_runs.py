@@ -20,22 +20,25 @@ from evidence.validation.convergence.statistics import (
 from vibroimpact.integration.batch import Schedule
 from vibroimpact.study.simulation import seed_forces
 
+# Chaos takes other paths on other processors: of 14 equal means with 32 seeds, one is beyond four
+# standard errors in 1 of 200 runs; with 16 seeds, in 1 of 60.
+SEEDS = 32
 SHORT = {
     "record.duration_s": 5.0,
     "integration.start_up_s": 1.0,
     "spectra.segment_s": 2.0,
-    "grid.seeds": 16,
+    "grid.seeds": SEEDS,
 }
 
 
 @pytest.fixture(scope="module")
 def rows(study_config):
-    """Return short runs at two steps, 16 seeds, 20 N, and one on few modes alone."""
+    """Return short runs at two steps, 20 N."""
     patch = pytest.MonkeyPatch()
     for key, value in SHORT.items():
         patch.setitem(convergence_runs.RUN, key, value)
     found = convergence_runs.run_rows(
-        study_config, "step", values=(25600, 51200), loads=(20.0,), seeds=16
+        study_config, "step", values=(25600, 51200), loads=(20.0,), seeds=SEEDS
     )
     patch.undo()
     return found
@@ -101,7 +104,7 @@ def test_shifted_statistic_is_detected(rows):
 
 
 def test_seeds_are_paired_by_their_number(rows):
-    assert np.array_equal(seeds_of(rows, "step", 51200, 20.0, "seed"), np.arange(16))
+    assert np.array_equal(seeds_of(rows, "step", 51200, 20.0, "seed"), np.arange(SEEDS))
     assert np.array_equal(
         seeds_of(rows[::-1], "step", 51200, 20.0, "rms_force_N"),
         seeds_of(rows, "step", 51200, 20.0, "rms_force_N"),

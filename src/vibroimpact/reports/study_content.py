@@ -12,6 +12,7 @@ import vibroimpact
 from vibroimpact.study.wear.life import WearRow
 
 from .equivalent_answer import ALL_SUPPORTS, Answer
+from .evenly_spread import spread_evenly
 from .number_text import digits
 from .study_statistics import StudyStatistics
 from .study_tables import (
@@ -19,7 +20,6 @@ from .study_tables import (
     energy_table,
     place_table,
     reason_table,
-    spread_evenly,
     stress_table,
     timing_table,
 )

@@ -257,10 +257,3 @@ def timing_table(rows: Sequence[dict]) -> Table:
         for row in rows
         if row["part"] == ""
     )
-
-
-def spread_evenly(values: Sequence[float], most: int) -> list[float]:
-    """Return at most `most` of the values, both ends among them, evenly spaced in their order."""
-    if len(values) <= most:
-        return list(values)
-    return [values[round(at * (len(values) - 1) / (most - 1))] for at in range(most)]

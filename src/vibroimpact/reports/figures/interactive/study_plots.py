@@ -10,11 +10,11 @@ from plotly.offline import get_plotlyjs
 from vibroimpact.identify.spectra.welch import driven_axis
 from vibroimpact.reports.centred_wear import centred_in
 from vibroimpact.reports.equivalent_answer import ALL_SUPPORTS, places_of, with_places
+from vibroimpact.reports.evenly_spread import spread_evenly
 from vibroimpact.reports.figures.study.linear_limits import contact_stiffness, shown_band
 from vibroimpact.reports.figures.study.psd_table import driven_sensor
 from vibroimpact.reports.study_content import StudyContent
 from vibroimpact.reports.study_page import PagePlots
-from vibroimpact.reports.study_tables import spread_evenly
 from vibroimpact.reports.study_words import load_label
 
 from .equivalent import equivalent_plots, load_axis
