@@ -344,6 +344,18 @@ def test_a_noisy_channel_is_not_taken_for_a_swapped_one(sound):
     assert "swapped channels" not in {row["check"] for row in complaints(sound)}
 
 
+@pytest.mark.parametrize("wakes", [False, True])
+def test_a_body_that_contact_alone_moves_is_not_dead(sound, wakes):
+    along = int(np.argmax(np.abs(sound["channel_direction"].values[:, 1])))
+    response = sound["response"].values
+    size = 0.01 * np.nanstd(response[0, along])
+    noise = size * np.random.default_rng(1).standard_normal(response[:, along].shape)
+    moved = np.where(np.arange(len(noise))[:, None] > 0, response[:, along], 0.0) if wakes else 0.0
+    response[:, along] = noise + moved + 0.0 * response[:, along]
+    found = [row["channel"] for row in complaints(sound) if row["check"] == "swapped channels"]
+    assert found == ([] if wakes else [names(sound, 0, along)[1]])
+
+
 @pytest.mark.parametrize("channel", [0, 3])
 def test_reversed_channel_is_detected(sound, channel):
     sound["response"].values[:, channel] *= -1.0

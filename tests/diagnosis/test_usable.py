@@ -72,3 +72,30 @@ def test_a_channel_passes_that_follows_the_completed_model(study_config):
         said, "pass"
     )
     assert checks_of_completed(refusal.value.checks, turned, study_config) == refusal.value.checks
+
+
+@pytest.mark.parametrize("seconds", [(0.6, 4.0, 4.0), (0.6, 0.6, 4.0)])
+def test_short_records_are_left_out(study_config, seconds):
+    rng = np.random.default_rng(2)
+    force = np.stack([[band_limited_noise(rng, 8192, RATE, (20.0, 900.0))] for _ in seconds])
+    force *= np.array([1.0, 3.0, 9.0])[:, None, None]
+    response = np.repeat(force, 2, axis=1) + 0.01 * rng.standard_normal((3, 2, 8192))
+    campaign = campaign_dataset(
+        force,
+        response,
+        [Channel(name, APEX, Y, "m s-2", "acceleration") for name in ("apex", "beside")],
+        [Channel("shaker", DRIVE, Y, "N", "generic")],
+        [Level(name, 2.9e-4) for name in ("low", "middle", "high")],
+        RATE,
+    )
+    campaign["valid_samples"] = "record", np.round(RATE * np.array(seconds)).astype(int)
+    for record, samples in enumerate(campaign["valid_samples"].values):
+        for name in ("force", "response"):
+            campaign[name].values[record, ..., samples:] = np.nan
+    if sum(duration > 1.0 for duration in seconds) < 2:
+        with pytest.raises(Refused, match="Fewer than two records"):
+            usable(campaign, study_config)
+        return
+    found, checks = usable(campaign, study_config)
+    assert list(found["record_name"].values) == ["middle", "high"]
+    assert [row["record"] for row in checks if row["check"] == "short records"] == ["low"]

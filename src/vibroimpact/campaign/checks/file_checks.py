@@ -40,6 +40,7 @@ from .linear_record import (
     mean_coherence,
     reversed_hint,
     swap_hints,
+    wakes,
 )
 from .signal_faults import (
     clipped_share,
@@ -365,6 +366,8 @@ def _mix_ups(measured, spectra, name):
     for index, other in swap_hints(measured, spectra):
         along = measured.channels[index]
         silent = f"{along} lies along the force and does not follow it in record {name} while"
+        if other is None and wakes(measured, index):
+            continue
         if other is None:
             why = {along: f"{silent} others do: it is dead or wrongly named."}
         else:

@@ -24,6 +24,7 @@ LONGEST_DELAY_SAMPLES, DELAY_STEP = 40.0, 0.05
 REAL_ENOUGH = 0.6
 SEEN_RAD, SEEN_SAMPLES = 0.15, 0.3  # least reported delay: its phase at the highest line; samples
 OUTSHINES = 10.0  # power of a channel across the force over one along it that makes a swap likely
+WOKEN = 2.0  # times its RMS in the lowest record that a dead channel does not reach
 SAME_SIGN = 0.7
 WELL_FITTED = 0.5  # relative error of real modes that say something of a delay
 LAG_ORDER = 12  # of the estimator of poles that a delay is held against
@@ -177,6 +178,17 @@ def swap_hints(signals: CampaignSignals, spectra: Transfer) -> list[tuple[int, i
         if partners or following > 1:
             hints.append((int(index), int(partners[0]) if partners else None))
     return hints
+
+
+def wakes(signals: CampaignSignals, channel: int) -> bool:
+    """Return whether a channel that is still in the lowest record moves in another: it is on a body
+    that contact alone moves. What a dead channel records does not grow with the load.
+    """
+    lowest = signals.lowest()
+    if lowest is None:
+        return False
+    rms = np.array([np.nanstd(response[channel]) for response in signals.response])
+    return bool(np.nanmax(rms) > WOKEN * rms[lowest])
 
 
 def reversed_hint(signals: CampaignSignals, spectra: Transfer) -> int | None:

@@ -1,4 +1,5 @@
-"""The channels of a campaign that are compared with a model, and reasons against a comparison.
+"""The channels and records of a campaign that are compared with a model, and reasons against a
+comparison.
 
 The model simulates motions under forces in N or on a moving base, strains of the outer fibre of a
 tube, and the forces of supports. Other channels are left out, with a sentence that says why.
@@ -34,6 +35,8 @@ LEFT_OUT = "channels"  # name of the check
 # bend deviates from its tangent by less.
 LEANS = 0.2
 ON_AXIS = 0.99  # least |cosine| of that normal with an axis of a section that is not round
+SHORTEST_RECORD_S = 2.5  # spectra are averages of segments of 2 s; motion is known between fades
+SHORT = "short records"  # name of the check
 NO_DIRECTION = 1.0e-6  # a shorter vector has no direction
 IDENTIFIED = "model=identified compares without a model"
 
@@ -88,6 +91,25 @@ def _forces(campaign: xr.Dataset) -> list[Place]:
 def channel_rows(campaign: xr.Dataset) -> list[dict]:
     """Return a row of checks for each channel that is left out of the comparison."""
     return _left_out((channel, channel.fault()) for channel in _places(campaign, "channel"))
+
+
+def record_rows(campaign: xr.Dataset) -> list[dict]:
+    """Return a row of checks for each record that is too short for a comparison."""
+    names = campaign["record_name"].values
+    whole = np.full(names.size, campaign.sizes["time"])
+    samples = campaign["valid_samples"].values if "valid_samples" in campaign else whole
+    seconds = samples / float(campaign.attrs["sampling_frequency"])
+    return [
+        check_row(
+            SHORT,
+            "warn",
+            f"Record {name} is {duration:.3g} s long: it is left out of a comparison with a model,"
+            f" which takes {SHORTEST_RECORD_S:g} s or more.",
+            record=str(name),
+        )
+        for name, duration in zip(names, seconds, strict=True)
+        if duration < SHORTEST_RECORD_S
+    ]
 
 
 def model_rows(config: ConfigPart, campaign: xr.Dataset) -> list[dict]:

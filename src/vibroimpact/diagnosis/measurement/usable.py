@@ -45,7 +45,7 @@ def usable(
     """
     whole, checks = checked_campaign(campaign)
     if whole is not None and not file_checks.refused(checks):
-        checks += comparable.channel_rows(whole)
+        checks += comparable.channel_rows(whole) + comparable.record_rows(whole)
         problems = comparable.comparison_problems(config, whole)
         checks += [check_row("model", "refuse", f"{problem}.") for problem in problems]
     found = _left(whole, checks)
@@ -116,6 +116,8 @@ def _left(whole: xr.Dataset | None, checks: list[dict[str, Any]]) -> xr.Dataset:
         for row in checks
         if row["check"] in CONTRADICTED and row["level"] == "warn" and row["record"] is not None
     }
+    short = [row["record"] for row in checks if row["check"] == comparable.SHORT]
+    force = force & ~np.isin(whole["record_name"].values, short)
     kept = ~np.isin(whole["channel_name"].values, [*filter(None, out)])
     moving = of_modes(whole["channel_kind"].values)
     if not (kept & moving).any():
