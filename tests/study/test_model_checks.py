@@ -130,6 +130,23 @@ def test_check_warns_of_a_coarse_mesh(tmp_path, capsys, reliability):
     )
 
 
+def test_exchanged_matrices_are_told(tmp_path):
+    for name, value in (("mass", 1.0e6), ("stiffness", 2.0)):
+        np.savez(tmp_path / f"{name}.npz", **{name: value * np.array([[2.0, -1.0], [-1.0, 2.0]])})
+    files = {name: str(tmp_path / f"{name}.npz") for name in ("mass", "stiffness")}
+    points = {"a": {"y": 0}, "b": {"y": 1}}
+    force = {"kind": "band_limited", "point": "a", "direction": [0.0, 1.0, 0.0]}
+    values = {
+        "structure": {"kind": "matrices", "points": points, **files},
+        "excitation": {**force, "band_Hz": [5.0, 200.0]},
+    }
+    problems = check_model(check_config(CHAIN | values, "mine")).problems
+    assert "exchange the two matrices" in problems[-1]
+    exchanged = dict(zip(files, reversed(files.values()), strict=True))
+    values["structure"] |= exchanged
+    assert check_model(check_config(CHAIN | values, "mine")).problems == ()
+
+
 def test_check_names_the_file_of_a_negative_stiffness(tmp_path, capsys, reliability):
     for name, matrix in (("mass", np.eye(2)), ("stiffness", -1.0e4 * np.eye(2))):
         np.savez(tmp_path / f"{name}.npz", **{name: matrix})

@@ -71,7 +71,7 @@ def check_model(config: Config) -> ModelChecks:
         )
     problems += [*without_effect(model, config.excitation), *runaway(model)]
     problems += [*still_points(config, structure), *too_many_ratios(config, model)]
-    problems += unseen(config, model)
+    problems += [*unseen(config, model), *exchanged(config, model)]
     try:
         checked_contraction(model, step.steps_per_second, step.scheme)
         require_stable_step(model, step.steps_per_second, step.scheme)
@@ -158,6 +158,17 @@ def unseen(config: Config, model: ModalModel) -> Iterator[str]:
                 f"identification.{place} = '{other}' moves as the reference '{one}' does: give a"
                 " point elsewhere, or leave it out"
             )
+
+
+def exchanged(config: Config, model: ModalModel) -> Iterator[str]:
+    """Yield that all modes of a structure given by matrices are below the band of its force."""
+    band, highest = getattr(config.excitation, "band_Hz", None), float(model.frequencies.max())
+    if config.structure.kind == "matrices" and band is not None and highest < band[0]:
+        yield (
+            f"structure.mass, structure.stiffness: the highest mode is at {highest:.3g} Hz, below"
+            f" the band of the force from {band[0]:g} Hz: exchange the two matrices, or correct"
+            " their units"
+        )
 
 
 def extrapolated(config: Config, model: ModalModel) -> Iterator[str]:
