@@ -111,7 +111,7 @@ STORY = (
     "Differences of model and measurement",
     "The missing effect",
     "Gain of the completed model",
-    "Explanations ruled out",
+    "Explanations compared",
     "A measurement that separates the rest",
     "Checks of the campaign",
 )

@@ -11,7 +11,7 @@ Apply = Callable[[Values, dict[str, float], str], Values]
 
 # Invariances of the bare model, which an effect may break; see docs/method.md.
 TESTS = {
-    "T1": "linearity below contact",
+    "T1": "the linear response below contact",
     "T2": "scaling with load over gap",
     "T3": "parity",
     "T4": "mirror",

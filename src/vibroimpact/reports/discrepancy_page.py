@@ -2,7 +2,7 @@
 
 The page shows the conclusion and its probability, the places of the largest differences, the law
 that the records demand, the effect with its values, its gain on held-out records, the explanations
-ruled out and why, and the measurement that would separate the rest.
+compared and why one is taken, and the measurement that would separate the rest.
 """
 
 from __future__ import annotations

@@ -24,6 +24,7 @@ from .style import label_of, shown, tidy_log_axes
 
 Column = tuple[str, ArrayLike]  # name of a column, values (point,) in SI
 NOTE_WIDTH = 26  # characters of a line in empty axes
+TITLE_PER_IN = 12.0  # characters of a title
 DIGITS = 7  # significant digits in the CSV
 WIDTH_IN, PNG_DPI = 7.6, 160
 
@@ -56,7 +57,8 @@ class Sheet:
         self.axes: dict[str, Axes] = self.figure.subplot_mosaic(mosaic, **gridspec)
         for key, axes in self.axes.items():
             axes.set_label(key)
-        self.figure.suptitle(title, x=0.01, ha="left")
+        wide = int(TITLE_PER_IN * self.figure.get_figwidth())
+        self.figure.suptitle(textwrap.fill(title, wide), x=0.01, ha="left")
 
     def record(self, axes: Axes, curve: str, **values: ArrayLike) -> str:
         """Add rows to the table; return the text "rows FIRST:LAST" of their place in it.
