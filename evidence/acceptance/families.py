@@ -8,39 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-FAMILIES = {
-    "friction": (
-        "dry_friction",
-        "dahl_friction",
-        "velocity_friction",
-        "lugre_friction",
-        "iwan_friction",
-        "spring_damper_friction",
-    ),
-    "contact stiffness": ("contact_stiffness", "hertz", "plate_flexibility"),
-    "contact damping": (
-        "contact_damping",
-        "hunt_crossley",
-        "flores_contact",
-        "lankarani_nikravesh_contact",
-    ),
-    "clearance and position": ("gap", "support_offset", "preload"),
-    "shape of the hole": ("foliate_obstacle", "flat_lands", "sine_lobes"),
-    "spring": (
-        "root_stiffness",
-        "lateral_stinger",
-        "cubic_stiffness",
-        "quadratic_stiffness",
-        "saturation_stiffness",
-        "clearance",
-        "one_sided_stop",
-    ),
-    "mass": ("added_mass", "mode_frequency_error"),
-    "damping": ("modal_damping", "fluid_added_mass_damping", "coulomb_friction"),
-    "drag": ("quadratic_drag",),
-    "sensor": ("sensor_gain", "sensor_delay"),
-    "force": ("force_misalignment",),
-}
+from evidence.truth.hidden import FAMILIES
 
 
 def family_of(name: str) -> str:

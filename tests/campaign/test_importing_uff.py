@@ -5,6 +5,7 @@ import pytest
 import pyuff
 import yaml
 
+from tests.support.universal_file import write_uff
 from vibroimpact.campaign.checks.file_checks import check_campaign
 from vibroimpact.campaign.file import channel_signal, force_signal
 from vibroimpact.campaign.importing.assemble import import_folder
@@ -54,38 +55,14 @@ def record(values, node, kind, name, start=0.0):
     )
 
 
-def write(folder, name, *sets):
-    """A universal file in SI units with nodes 1 and 2 and datasets 58."""
-    units = pyuff.prepare_164(
-        units_code=1,
-        units_description="SI",
-        temp_mode=1,
-        length=1.0,
-        force=1.0,
-        temp=1.0,
-        temp_offset=0.0,
-    )
-    nodes = pyuff.prepare_15(
-        node_nums=[1, 2],
-        def_cs=[0, 0],
-        disp_cs=[0, 0],
-        color=[1, 1],
-        x=[0.0, 0.5],
-        y=[0.0, 0.0],
-        z=[0.0, 0.0],
-    )
-    pyuff.UFF(str(folder / name)).write_sets([units, nodes, *sets], "overwrite")
-
-
 @pytest.fixture
 def drive_point(tmp_path):
     """Two files with a force and an acceleration at 1:+z, and an acceleration at 2:+z."""
     draw = np.random.default_rng(1)
     for name, level in (("low.uff", 1.0), ("high.uff", 4.0)):
         force, first, second = draw.standard_normal((3, SAMPLES))
-        write(
-            tmp_path,
-            name,
+        write_uff(
+            tmp_path / name,
             record(level * force / force.std(), 1, FORCE, "Force F1"),
             record(first, 1, ACCELERATION, "Accel A1"),
             record(second, 2, ACCELERATION, "Accel A2"),
@@ -127,9 +104,8 @@ def test_records_of_one_node_and_quantity_have_own_names(tmp_path):
     values = np.random.default_rng(2).standard_normal((5, 64))
     kinds = (FORCE, ACCELERATION, ACCELERATION, ACCELERATION, ACCELERATION)
     lines = ("F", "A", "B", "B", "NONE")
-    write(
-        tmp_path,
-        "run.uff",
+    write_uff(
+        tmp_path / "run.uff",
         *(record(*each) for each in zip(values, [1] * 5, kinds, lines, strict=True)),
     )
     assert [signal.name for signal in read_uff(tmp_path / "run.uff")] == [
@@ -158,9 +134,8 @@ def late(folder, start):
     """A force, and the same 3 samples later as an acceleration that begins at `start` in s."""
     force = np.random.default_rng(3).standard_normal(SAMPLES)
     response = np.roll(force, 3)[round(start * RATE) :]
-    write(
-        folder,
-        "run.uff",
+    write_uff(
+        folder / "run.uff",
         record(force, 1, FORCE, "F"),
         record(response, 2, ACCELERATION, "A", start),
     )
@@ -184,9 +159,8 @@ def test_channels_that_begin_later_are_aligned(tmp_path, start):
 def test_channels_that_can_not_be_aligned_are_refused(tmp_path, start, told):
     late(tmp_path, 0.0)
     force, response = np.random.default_rng(4).standard_normal((2, SAMPLES))
-    write(
-        tmp_path,
-        "run.uff",
+    write_uff(
+        tmp_path / "run.uff",
         record(force, 1, FORCE, "F"),
         record(response, 2, ACCELERATION, "A", start),
     )
@@ -198,6 +172,6 @@ def test_channels_that_can_not_be_aligned_are_refused(tmp_path, start, told):
 def test_a_time_step_that_does_not_advance_is_refused(tmp_path, step):
     times = {"x": step * np.arange(SAMPLES), "abscissa_inc": step}
     still = record(np.arange(SAMPLES) * 1.0, 1, FORCE, "drive") | times
-    write(tmp_path, "low.uff", still)
+    write_uff(tmp_path / "low.uff", still)
     with pytest.raises(ImportProblem, match="its time step is .* correct the abscissa increment"):
         read_uff(tmp_path / "low.uff")

@@ -5,6 +5,7 @@ import pytest
 import pyuff
 
 from docs.examples import hammer_test
+from tests.support.universal_file import write_uff
 from vibroimpact.campaign.file import write_campaign
 from vibroimpact.campaign.importing.assemble import import_folder
 from vibroimpact.campaign.importing.frf import read_frfs
@@ -64,29 +65,6 @@ def function(values, response, force, label, kind=ACCELERATION):
     )
 
 
-def write(path, *functions, nodes=True):
-    units = pyuff.prepare_164(
-        units_code=1,
-        units_description="SI",
-        temp_mode=1,
-        length=1.0,
-        force=1.0,
-        temp=1.0,
-        temp_offset=0.0,
-    )
-    places = pyuff.prepare_15(
-        node_nums=[1, 2],
-        def_cs=[0, 0],
-        disp_cs=[0, 0],
-        color=[1, 1],
-        x=[0.0, 0.2],
-        y=[0.0, 0.0],
-        z=[0.0, 0.0],
-    )
-    pyuff.UFF(str(path)).write_sets([units, *([places] if nodes else []), *functions], "overwrite")
-    return path
-
-
 @pytest.fixture
 def model(tmp_path):
     path = tmp_path / "model.yaml"
@@ -109,7 +87,7 @@ def compared(path, model):
 )
 def test_modes_are_those_of_the_closed_form(tmp_path, model, kind, label, factor):
     h1 = responses(ORDERS[kind], first=1.03) / factor
-    path = write(
+    path = write_uff(
         tmp_path / "frf.uff",
         function(h1[0, 0], 1, 1, label, kind),
         function(h1[1, 0], 2, 1, label, kind),
@@ -125,7 +103,7 @@ def test_modes_are_those_of_the_closed_form(tmp_path, model, kind, label, factor
 
 def test_a_roving_hammer_is_read_as_a_roving_sensor(tmp_path, model):
     h1 = responses(2)
-    roving = write(
+    roving = write_uff(
         tmp_path / "roving.uff",
         function(h1[1, 0], 2, 1, "m/s^2/N"),
         function(h1[1, 1], 2, 2, "m/s^2/N"),
@@ -141,7 +119,7 @@ def test_a_roving_hammer_is_read_as_a_roving_sensor(tmp_path, model):
 )
 def test_a_channel_that_contradicts_the_model_is_told(tmp_path, model, factor, told):
     h1 = responses(2)
-    path = write(
+    path = write_uff(
         tmp_path / "frf.uff",
         function(h1[0, 0], 1, 1, "m/s^2/N"),
         function(factor * h1[1, 0], 2, 1, "m/s^2/N"),
@@ -162,12 +140,12 @@ def test_responses_that_can_not_be_read_say_why(tmp_path):
         ([], True, "holds no frequency response"),
     ):
         with pytest.raises(ImportProblem, match=told):
-            read_frfs(write(tmp_path / "wrong.uff", *functions, nodes=nodes))
+            read_frfs(write_uff(tmp_path / "wrong.uff", *functions, nodes=nodes))
 
 
 def test_the_command_compares_responses_and_records(tmp_path, model, capsys):
     h1 = responses(2)
-    frf = write(
+    frf = write_uff(
         tmp_path / "frf.uff",
         function(h1[0, 0], 1, 1, "m/s^2/N"),
         function(h1[1, 0], 2, 1, "m/s^2/N"),
@@ -193,7 +171,7 @@ def _alone(tmp_path, file):
 @pytest.mark.parametrize("damage", ["no file", "no model", "elsewhere", "one blow"])
 def test_what_can_not_be_compared_is_a_sentence(tmp_path, model, capsys, damage):
     h1 = responses(2)
-    file = write(tmp_path / "frf.uff", function(h1[0, 0], 1, 1, "m/s^2/N"))
+    file = write_uff(tmp_path / "frf.uff", function(h1[0, 0], 1, 1, "m/s^2/N"))
     told = {
         "no file": "absent.uff",
         "no model": "absent.yaml",

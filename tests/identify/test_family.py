@@ -7,28 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.support.layouts import LAYOUT
 from vibroimpact.identify.equivalent_support import equivalent_support
 from vibroimpact.identify.linear.family import LinearFamily, driven_modes
 from vibroimpact.identify.linear.modes import natural_frequencies
 from vibroimpact.identify.linear.poles import first_pole, frequency_of
 from vibroimpact.identify.linear.responses import frf
 from vibroimpact.identify.reference_tube import ReferenceTube
-from vibroimpact.identify.spectra_layout import SpectraLayout
 
-LAYOUT = SpectraLayout(
-    spacing_Hz=0.1,
-    highest=1200,
-    line_first=80,
-    line_last=600,
-    window="hann",
-    sensors=("apex.y", "bend_45.y"),
-    response=0,
-    broadband=1,
-    references=(0, 1),
-    force_band_Hz=(5.0, 200.0),
-    broadband_Hz=(6.0, 99.0),
-    stiffness_range=(1.0e3, 1.0e8),
-)
 MEMBERS = [(0.0, 0.0), (1.0e3, -2.0), (1.0e5, 62.0), (4.0e6, 1.0e4), (1.0e9, 0.0)]
 
 

@@ -2,9 +2,12 @@
 back.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from tests.support.layouts import LAYOUT
 from vibroimpact.identify.broadband import family_map, identify_broadband
 from vibroimpact.identify.linear.family import LinearFamily, driven_modes
 from vibroimpact.identify.linear.poles import first_pole, frequency_of
@@ -13,26 +16,11 @@ from vibroimpact.identify.ods import deflection_shape, linear_ods, mac, match_sh
 from vibroimpact.identify.peak import level_edges
 from vibroimpact.identify.reference_tube import ReferenceTube
 from vibroimpact.identify.spectra.window_leakage import spectral_kernel
-from vibroimpact.identify.spectra_layout import SpectraLayout
 
 
 @pytest.fixture(scope="module")
 def tube(study_model):
-    layout = SpectraLayout(
-        spacing_Hz=0.1,
-        highest=1200,
-        line_first=80,
-        line_last=600,
-        window="none",
-        sensors=("apex.y", "bend_45.y"),
-        response=0,
-        broadband=1,
-        references=(0, 1),
-        force_band_Hz=(5.0, 200.0),
-        broadband_Hz=(6.0, 99.0),
-        stiffness_range=(1.0e3, 1.0e8),
-    )
-    return ReferenceTube(study_model, layout)
+    return ReferenceTube(study_model, replace(LAYOUT, window="none"))
 
 
 def test_mac_sees_neither_size_nor_phase():
