@@ -10,6 +10,8 @@ from vibroimpact.diagnosis.bench import holding_lines
 from vibroimpact.diagnosis.catalogue import far_terms, halfway, locations
 from vibroimpact.diagnosis.explanations import Point, Term
 from vibroimpact.diagnosis.screening import Screened, trials_again
+from vibroimpact.diagnosis.search import one_law
+from vibroimpact.effects.places import between
 from vibroimpact.effects.registry import EFFECTS
 
 TUBE = {"kind": "tube", "outer_diameter_m": 0.02, "wall_thickness_m": 0.001}
@@ -82,3 +84,18 @@ def test_a_mode_above_the_lines_is_not_named(comparison):
     low = replace(comparison, signals=comparison.signals)
     object.__setattr__(low, "band", (comparison.band[0], 1.2 * model.frequencies[0]))
     assert low.resonant == {"mode_1"}
+
+
+@pytest.mark.parametrize(
+    ("place", "other", "beside", "one"),
+    [
+        (0.573, "clearance", 0.572, True),
+        (0.573, "clearance", 0.700, False),
+        (0.573, "added_mass", 0.573, False),  # no law of a displacement
+        (None, "clearance", None, False),  # a named point may bear two
+    ],
+)
+def test_two_laws_at_one_place_of_a_tube_are_one(place, other, beside, one):
+    where = ["tip" if own is None else between(own) for own in (place, beside)]
+    terms = Term("saturation_stiffness", where[0], (1.0e3, 1.0)), Term(other, where[1], (1.0, 1.0))
+    assert one_law(terms, 2.0) == one

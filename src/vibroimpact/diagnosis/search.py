@@ -21,7 +21,7 @@ from .bench import (
     holding_lines,
     log_power,
 )
-from .catalogue import within_priors
+from .catalogue import AT_A_POINT, within_priors
 from .comparison import Comparison
 from .constants import NULL_GAIN, needed_gain
 from .coordinates import effect_coordinates
@@ -38,6 +38,7 @@ RIVALS_AGAIN = 40  # of the first effect, tried again when a second one is known
 SECONDS = 4  # of the starts of a race
 VALUES = 4  # at most, from which a fit may begin
 SCREENED_RIVALS = 0.1  # of the best gain of a screening, from which other effects are raced
+ONE_LAW = 0.01  # of a tube's length: two laws that act nearer are one
 ONE_PLACE = 0.05  # of a tube's length: fits that end nearer are one
 CONTENDS = 0.6  # of the gain of the best fit, from which others are polished too
 RIVALS = 0.3  # of the gain of the best in a race, from which others are finalists
@@ -48,6 +49,7 @@ RACE_PASSES, FINAL_PASSES = 3, 12  # at most
 POLISHED, POLISHED_GAIN = 3, 0.01  # times at most, and the gain below which it ends
 MOST_EFFECTS = 2
 PLATE = "plate_flexibility"
+POINT_LAWS = frozenset(AT_A_POINT) - {"added_mass"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -261,6 +263,7 @@ def _race(
         Screened(*pair)
         for pair in zip(points, map(float, gains_of(about, points)), strict=True)
         if not within_priors(pair[0].terms[-1], at.comparison.signals.rate, sizes)
+        and not one_law(pair[0].terms, sizes["tube_length"])
     ]
     raced.sort(key=lambda each: -each.gain)
     kept: dict[tuple, Screened] = {}
@@ -326,6 +329,18 @@ def _where(term: Term, length: float) -> tuple:
     """Return a key that fits of one effect at one place share; length: of the tube, m."""
     arc = arc_length_m(term.location)
     return term.effect_id, term.location if arc is None else round(arc / (ONE_PLACE * length))
+
+
+def one_law(terms: Sequence[Term], length: float) -> bool:
+    """Return whether the last of terms is a law at the place of another one on a tube of a length
+    in m: the two are one law, of a form that the catalogue has not.
+    """
+    *others, last = terms
+    at = arc_length_m(last.location)
+    if at is None or last.effect_id not in POINT_LAWS:
+        return False
+    places = (arc_length_m(own.location) for own in others if own.effect_id in POINT_LAWS)
+    return any(place is not None and abs(place - at) < ONE_LAW * length for place in places)
 
 
 def _finals(
@@ -451,13 +466,15 @@ def _without_first(
 
 
 def _kept(at: _Benches, found: Sequence[Hypothesis], nothing: Hypothesis) -> list[Hypothesis]:
-    """Return the Hypotheses that could be run, without the effects that are within the priors."""
+    """Return the Hypotheses that could be run and name no law twice, without the effects that are
+    within the priors.
+    """
     rate, sizes = at.comparison.signals.rate, at.comparison.sizes
     out = []
     for each in found:
         terms = tuple(term for term in each.point.terms if not within_priors(term, rate, sizes))
         if terms and len(terms) < len(each.point.terms):
             [each] = _finals(at, [replace(each.point, terms=terms)], nothing) or [each]
-        if terms and np.isfinite(each.gain):
+        if terms and np.isfinite(each.gain) and not one_law(terms, sizes["tube_length"]):
             out.append(each)
     return out
