@@ -20,7 +20,9 @@ from .constants import INDEPENDENT
 from .coordinates import Coordinate, bounds, to_point, to_vector
 from .explanations import Point
 
-SHARES = (1.0, 0.4)  # of a step, run side by side, and beside the step by the lowest load alone
+# Of a step, run side by side, and beside the step by the lowest load alone: LARGEST_STEP may be too
+# short for a long way, and a line too long for a curved one.
+SHARES = (1.0, 0.4, 2.5)
 LARGEST_STEP = 1.0  # of the coordinate of an effect
 TRIES = 3
 SETTLED = 2.0e-3  # gain per effective line, below which it ends

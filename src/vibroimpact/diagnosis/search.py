@@ -266,11 +266,13 @@ def _race(
         and not one_law(pair[0].terms, sizes["tube_length"])
     ]
     raced.sort(key=lambda each: -each.gain)
-    kept: dict[tuple, Screened] = {}
+    kept: list[Screened] = []
     for each in raced:
-        if each.gain >= RIVALS * raced[0].gain:
-            kept.setdefault(_where(each.point.terms[-1], sizes["tube_length"]), each)
-    return list(kept.values())
+        term, length = each.point.terms[-1], sizes["tube_length"]
+        new = not any(_alike(term, own.point.terms[-1], length) for own in kept)
+        if new and each.gain >= RIVALS * raced[0].gain:
+            kept.append(each)
+    return kept
 
 
 def _starts(at: _Benches, screened: Sequence[Screened], most: int) -> list[Point]:
@@ -312,9 +314,9 @@ def _finals_of(
     """
     length, chosen = at.comparison.sizes["tube_length"], []
     for each in raced:
-        where, least = _where(each.point.terms[-1], length), CONTENDS * each.gain
+        term, least = each.point.terms[-1], CONTENDS * each.gain
         others = (own for own in screened if own.gain >= least)
-        alike = [own.point for own in others if _where(own.point.terms[-1], length) == where]
+        alike = [own.point for own in others if _alike(own.point.terms[-1], term, length)]
         chosen.append([each.point, *alike[:VALUES]])
     about = _nuisances(at, [each.point for each in raced])
     if about is None:
@@ -325,10 +327,12 @@ def _finals_of(
     return _finals(at, starts, nothing, about=about)
 
 
-def _where(term: Term, length: float) -> tuple:
-    """Return a key that fits of one effect at one place share; length: of the tube, m."""
-    arc = arc_length_m(term.location)
-    return term.effect_id, term.location if arc is None else round(arc / (ONE_PLACE * length))
+def _alike(one: Term, other: Term, length: float) -> bool:
+    """Return whether two terms are one effect at one place; length: of the tube, m."""
+    first, second = arc_length_m(one.location), arc_length_m(other.location)
+    if one.effect_id != other.effect_id or first is None or second is None:
+        return (one.effect_id, one.location) == (other.effect_id, other.location)
+    return abs(first - second) < ONE_PLACE * length
 
 
 def one_law(terms: Sequence[Term], length: float) -> bool:
