@@ -24,7 +24,7 @@ from .style import label_of, shown, tidy_log_axes
 
 Column = tuple[str, ArrayLike]  # name of a column, values (point,) in SI
 NOTE_WIDTH = 26  # characters of a line in empty axes
-TITLE_PER_IN = 12.0  # characters of a title
+TITLE_PER_IN = 10.0  # characters of a title
 DIGITS = 7  # significant digits in the CSV
 WIDTH_IN, PNG_DPI = 7.6, 160
 
