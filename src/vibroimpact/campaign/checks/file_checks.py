@@ -87,6 +87,7 @@ BESIDE = {"base motion": "load_rms"}  # a check of some campaigns alone, and the
 EXCLUDING_CHECKS = ("units", "gaps in time", "spikes", "clipping", "drop-outs", "record length")
 LEVELS_APART = 1.05
 BANDS_PER_DECADE = 24 / np.log10(200.0 / 5.0)
+NOT_IMPORTED = " A campaign is netCDF: snakemake import_campaign makes one of UFF, MATLAB or CSV."
 FEWEST_PERIODS, GOOD_AVERAGES = 10.0, 6.0
 
 
@@ -99,7 +100,8 @@ def check_file(path: str | Path) -> tuple[xr.Dataset | None, list[dict]]:
         campaign = opened_campaign(path)
     except RecordError as error:
         reason = str(error).removeprefix(f"{path}: ")
-        return None, [check_row("contract", "refuse", f"The file {reason}.")]
+        remedy = "" if Path(path).suffix == ".nc" else NOT_IMPORTED
+        return None, [check_row("contract", "refuse", f"The file {reason}.{remedy}")]
     rows = check_campaign(campaign)
     if any(row["check"] == "contract" and row["level"] == "refuse" for row in rows):
         return None, rows
