@@ -20,9 +20,9 @@ from .constants import INDEPENDENT
 from .coordinates import Coordinate, bounds, to_point, to_vector
 from .explanations import Point
 
-# Of a step, run side by side, and beside the step by the lowest load alone: LARGEST_STEP may be too
-# short for a long way, and a line too long for a curved one.
-SHARES = (1.0, 0.4, 2.5)
+# Of a step, run side by side, and beside the step by the lowest load alone.
+SHARES = (1.0, 0.4)
+FAR = 2.5  # LARGEST_STEP may be too short for a long way: a fit to the end tries a longer step too
 LARGEST_STEP = 1.0  # of the coordinate of an effect
 TRIES = 3
 SETTLED = 2.0e-3  # gain per effective line, below which it ends
@@ -83,14 +83,16 @@ def fits(
     starts: Sequence[tuple[Point, Sequence[Coordinate]]],
     passes: int,
     known: np.ndarray | None = None,
+    shares: Sequence[float] = (*SHARES, FAR),
 ) -> list[Fit]:
     """Return the Fit of coordinates from each (Point, coordinates). All take their steps together,
     so that their runs fill the lanes of the kernel; none depends on another.
 
     passes: at most. known (nuisance, stretch, channel, line): columns of the nuisances among
-    the coordinates, which are kept; if None, they are found anew in each pass.
+    the coordinates, which are kept; if None, they are found anew in each pass. shares: of a step
+    that are tried.
     """
-    running = dict(enumerate(_fit(bench, *start, passes, known) for start in starts))
+    running = dict(enumerate(_fit(bench, *start, passes, known, shares) for start in starts))
     asked = {number: next(own) for number, own in running.items()}
     done: dict[int, Fit] = {}
     while asked:
@@ -121,6 +123,7 @@ def _fit(
     rows: Sequence[Coordinate],
     passes: int,
     known: np.ndarray | None,
+    shares: Sequence[float],
 ) -> Generator[list[Point], np.ndarray, Fit]:
     """Yield Points to be run, take their lines, and return the Fit."""
     low, high = bounds(rows)
@@ -148,7 +151,7 @@ def _fit(
         before = value
         for _ in range(TRIES):
             step = _step(information, pull, damping, own)
-            tried = [np.clip(x + share * step, low, high) for share in SHARES]
+            tried = [np.clip(x + share * step, low, high) for share in shares]
             tried.append(np.clip(x + _step(lowest[0], lowest[1], damping, own), low, high))
             points = [to_point(each, rows, start) for each in tried]
             found = yield points

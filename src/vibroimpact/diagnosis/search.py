@@ -26,7 +26,7 @@ from .comparison import Comparison
 from .constants import NULL_GAIN, needed_gain
 from .coordinates import effect_coordinates
 from .explanations import Point, Term
-from .gauss_newton import Fit, fits
+from .gauss_newton import SHARES, Fit, fits
 from .measurement.usable import Refused
 from .nuisances import Nuisances, nuisances_at
 from .place_starts import place_terms
@@ -257,7 +257,7 @@ def _race(
     sizes = at.comparison.sizes
     rows = [[*effect_coordinates(own.terms, sizes), *about.rows] for own in starts]
     known = nuisances_at(strong, about.base, about.rows).columns
-    ends = fits(strong, list(zip(starts, rows, strict=True)), RACE_PASSES, known)
+    ends = fits(strong, list(zip(starts, rows, strict=True)), RACE_PASSES, known, SHARES)
     points = [*starts, *(own.point for own in ends)]
     raced = [
         Screened(*pair)
