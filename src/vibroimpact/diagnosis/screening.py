@@ -24,7 +24,7 @@ AT_A_TIME = 256  # points whose lines are held in memory
 MODE = "mode_frequency_error"
 TRIED = 12  # of the points that derivatives predict, on each stretch
 KEPT, FEWEST_KEPT = 0.3, 40  # of the points: those that are tried on all stretches
-AGAIN, MANY = 2, 24  # values at a place of an effect with MANY trials, when one more is sought
+AGAIN, MANY = 2, 30  # values at a place of an effect with MANY trials, when one more is sought
 BETWEEN = 10  # effects whose best point is tried half way to the next ones
 FARTHEST_STEP = 1.5  # of a coordinate, from the neutral value of the effect
 
