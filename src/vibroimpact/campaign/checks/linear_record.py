@@ -187,8 +187,8 @@ def wakes(signals: CampaignSignals, channel: int) -> bool:
     lowest = signals.lowest()
     if lowest is None:
         return False
-    rms = np.array([np.nanstd(response[channel]) for response in signals.response])
-    return bool(np.nanmax(rms) > WOKEN * rms[lowest])
+    rms = [np.nan_to_num(response[channel]).std() for response in signals.response]
+    return bool(max(rms) > WOKEN * rms[lowest])
 
 
 def reversed_hint(signals: CampaignSignals, spectra: Transfer) -> int | None:
