@@ -74,8 +74,19 @@ def test_pass_band_is_flat_at_any_sampling_rate(rate, stages):
     assert np.max(np.abs(level)) < 0.05
 
 
+def test_one_stage_stops_the_images_of_the_pass_band():
+    rate, steps = 2048.0, 10240.0
+    design = output_filter(steps, rate)
+    assert design.step == 1
+    passed = np.linspace(0.0, 0.78 * rate / 2, 500)
+    level = 20 * np.log10(design.response(passed, steps))
+    images = design.response(np.concatenate([rate - passed, 2 * rate + passed]), steps)
+    assert np.max(np.abs(level)) < 0.3
+    assert 20 * np.log10(np.max(np.abs(images))) < -50.0
+
+
 def test_rates_that_do_not_fit_are_refused():
-    with pytest.raises(ValueError, match="must be a multiple of 5"):
+    with pytest.raises(ValueError, match="must be a multiple of 5: choose .* of 5120 Hz divided"):
         output_filter(25600.0, 2048.0)
-    with pytest.raises(ValueError, match="at least 10: choose a sampling frequency of 4096 Hz"):
-        output_filter(20480.0, 4096.0)
+    with pytest.raises(ValueError, match="must be a multiple of 5"):
+        output_filter(20480.0, 8192.0)

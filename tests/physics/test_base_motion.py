@@ -14,7 +14,7 @@ from vibroimpact.config.reading import check_config
 from vibroimpact.diagnosis.measurement.attached_model import attach
 from vibroimpact.diagnosis.measurement.signals import signals_of
 from vibroimpact.diagnosis.measurement.simulated_records import simulate_records
-from vibroimpact.diagnosis.measurement.stretches import whole_rates
+from vibroimpact.diagnosis.measurement.stretches import rates_of
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.identify.linear.responses import frf
 from vibroimpact.reduction.reduced_model import build_model
@@ -127,7 +127,9 @@ def test_records_agree_with_the_independent_code(study_config):
     channels = [(kind, APEX, Y, kind) for kind in kinds]
     campaign = on_base(force[0], absolute, channels, start_up="rest")
     measured = signals_of(campaign).response[0]
-    rates = whole_rates(float(campaign.attrs["sampling_frequency"]), study_config.integration)
+    rates = rates_of(
+        float(campaign.attrs["sampling_frequency"]), study_config.integration.steps_per_second
+    )
     schedule = rates.schedule(4.0, study_config.integration.scheme)
     model = attach(study_config, campaign)
     simulated = simulate_records(model, schedule, force[:, None], [(0, GAP, 0)], kinds)

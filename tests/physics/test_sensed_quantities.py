@@ -12,7 +12,7 @@ from vibroimpact.config.reading import check_config
 from vibroimpact.diagnosis.measurement import simulated_records as forward
 from vibroimpact.diagnosis.measurement.attached_model import attach
 from vibroimpact.diagnosis.measurement.simulated_records import simulate_records
-from vibroimpact.diagnosis.measurement.stretches import whole_rates
+from vibroimpact.diagnosis.measurement.stretches import rates_of
 from vibroimpact.excitation.random_force import band_limited_noise
 
 UNITS = {"displacement": "m", "velocity": "m s-1", "acceleration": "m s-2"}
@@ -40,7 +40,7 @@ def recorded(model, campaign, config, gap=np.nan):
     """(channel, time) one run of the campaign's record on a model, by the campaign's own kinds."""
     force = campaign["force"].values.astype(float)
     rate = float(campaign.attrs["sampling_frequency"])
-    rates = whole_rates(rate, config.integration)
+    rates = rates_of(rate, config.integration.steps_per_second)
     schedule = rates.schedule(force.shape[-1] / rate, config.integration.scheme)
     kinds = campaign["channel_kind"].values
     return simulate_records(model, schedule, force, [(0, gap, 0)], kinds)[0]

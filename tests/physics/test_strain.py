@@ -9,7 +9,7 @@ from vibroimpact.config.reading import check_config
 from vibroimpact.diagnosis.measurement.attached_model import attach
 from vibroimpact.diagnosis.measurement.sensed_motion import displacement_scale
 from vibroimpact.diagnosis.measurement.simulated_records import simulate_records
-from vibroimpact.diagnosis.measurement.stretches import whole_rates
+from vibroimpact.diagnosis.measurement.stretches import rates_of
 from vibroimpact.structure.beam_elements import section_beam
 
 LENGTH, RADIUS, WALL, YOUNG = 1.2, 0.01, 0.001, 2.0e11
@@ -82,7 +82,7 @@ def test_slow_force_in_a_simulated_record(cantilever):
     campaign = campaign_of([(ROOT, Y), (MIDDLE, Y)], force)
     model = attach(cantilever, campaign)
     integration, runs = cantilever.integration, [(0, np.nan, 0)]
-    schedule = whole_rates(RATE, integration).schedule(4.0, integration.scheme)
+    schedule = rates_of(RATE, integration.steps_per_second).schedule(4.0, integration.scheme)
     found = simulate_records(model, schedule, force[None, None], runs, ["strain"] * 2)[0]
     wave = np.sin(2.0 * np.pi * time)[2048:]
     amplitude = found[:, 2048:] @ wave / (wave @ wave)

@@ -92,6 +92,7 @@ AT_A_KNOWN_PLACE: dict[str, Sequence[tuple[float, ...]]] = FAR | {
     law: [*((share, 1.0) for share in (0.2, 0.3, 0.45, 0.7, 1.0, 1.5)), (0.2, 100.0), (0.6, 100.0)]
     for law in ("clearance", "one_sided_stop")
 }
+AT_A_KNOWN_PLACE["cubic_stiffness"] = [(0.3,), (1.0,), (3.0,), (10.0,)]
 
 
 def locations(

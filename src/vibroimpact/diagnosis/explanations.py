@@ -23,14 +23,17 @@ from vibroimpact.reduction.reduced_model import Basis
 from .measurement.attached_model import attach, attached_basis
 from .measurement.sensed_motion import displacement_scale
 from .measurement.sensor_chain import Measuring
-from .measurement.stretches import rates_of
+from .measurement.stretches import decimation_of
 
 KEPT_MODELS = 256
+# Records are compared at a sampling frequency of so much at least, and so many times the first
+# mode, or at their own.
+SLOWEST_HZ, PER_FIRST_MODE = 2000.0, 20.0
 TURNED = "force_misalignment"
 SEEN = 1.0e-3  # of the largest shape at a sensor or force: a smaller one is not seen
 # Modes are kept to so many times the sampling frequency of the records. Those above change the
 # holding force of a right model by 1 % of its power at the highest load.
-MODES_TO = 3.0
+MODES_TO = 1.5
 # Arrays of a ModalModel whose first axis is the mode, other than omega and damping.
 BY_MODE = tuple(name for name in MODE_FIELDS if name not in ("omega", "damping"))
 
@@ -106,8 +109,8 @@ class Point:
 class Structure:
     """The model as given, attached to a campaign; it makes the models of Points.
 
-    scale (channel,): displacement per unit of a channel's quantity. dropped: number of modes above
-    the range of the records.
+    scale (channel,): displacement per unit of a channel's quantity. decimation: of the records that
+    are compared with it. dropped: number of modes above their range.
     """
 
     config: Config
@@ -115,6 +118,7 @@ class Structure:
     values: Values = field(init=False)
     scale: np.ndarray = field(init=False)
     basis: Basis | None = field(init=False)
+    decimation: int = field(init=False)
     dropped: int = field(init=False)
     with_terms: Callable[[tuple[Term, ...]], ModalModel] = field(init=False)
 
@@ -127,8 +131,10 @@ class Structure:
             "with_terms": lru_cache(maxsize=KEPT_MODELS)(self._with_terms),
         }
         sampling = float(self.campaign.attrs["sampling_frequency"])
-        highest = MODES_TO * rates_of(sampling, self.config.integration).sampling
-        fields["dropped"] = int(np.sum(own.frequencies > highest))
+        first = float(own.frequencies[own.omega > 0.0].min())
+        decimation = decimation_of(sampling, max(SLOWEST_HZ, PER_FIRST_MODE * first))
+        fields["decimation"] = decimation
+        fields["dropped"] = int(np.sum(own.frequencies > MODES_TO * sampling / decimation))
         for name, value in fields.items():
             object.__setattr__(self, name, value)
 

@@ -20,7 +20,7 @@ from .constants import FREE_EXCESS_DB, LEFT_SHARE
 from .explanations import Point, Structure
 from .measurement.signals import Signals
 from .measurement.simulated_records import simulate_records
-from .measurement.stretches import valid_samples, whole_rates
+from .measurement.stretches import rates_of, valid_samples
 
 SEEDS = 4  # whirling may begin in one run and not in another
 CHANCE_RUNS = 20  # of a record that seems off: a measurement is the farthest of all once in 21
@@ -117,7 +117,7 @@ def _simulated(structure, signals, point, records=None, seeds=range(SEEDS)):
     """
     samples = max(valid_samples(signals, record) for record in range(len(signals.load)))
     integration = structure.config.integration
-    rates = whole_rates(signals.rate, integration)
+    rates = rates_of(signals.rate, integration.steps_per_second)
     model, chain = structure.model(point), structure.measuring(point)
     force = signals.force / chain.force_gain
     raw = replace(model, sensor_shapes=model.sensor_shapes / structure.scale)

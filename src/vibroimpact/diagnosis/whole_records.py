@@ -127,7 +127,8 @@ class Holder:
 def holder(structure: Structure, signals: Signals, point: Point) -> Holder:
     """Return the Holder of the records of a campaign."""
     model = structure.model(point)
-    rates = rates_of(signals.rate, structure.config.integration)
+    steps = structure.config.integration.steps_per_second
+    rates = rates_of(signals.rate, steps, structure.decimation)
     band = held_band(signals, rates, first_mode_Hz(model))
     return Holder(structure, signals, point, model, rates, band)
 

@@ -4,6 +4,9 @@ Two linear-phase stages. The first divides the rate by ``RATIO`` inside the inte
 to stop the images of the final band around the multiples of its output rate, which would fold into
 it. The second does the rest: >= 80 dB above half the sampling frequency, ripple <= 0.05 dB below
 0.78 of it (800 Hz at 2048 Hz).
+
+If the first stage alone gives the sampling of the records, it stops (by 50 dB) the images of the
+passband and nothing else: enough for motion and forces of modes in the passband.
 """
 
 from dataclasses import dataclass
@@ -12,7 +15,7 @@ import numpy as np
 
 from .kernels.decimation import BEHIND, RATIO, SLOTS
 
-LEAST_STAGES = 2  # decimation of the second stage at least
+LEAST_STAGES = 2  # decimation of the second stage of a record at least
 PASS_FRACTION = 0.78125  # of half the sampling frequency: 800 Hz of 1024 Hz
 KAISER_ATTENUATION_DB = 100.0
 DIFFERENCE_ERROR = 1e-6  # relative, of the second derivative up to the end of the passband
@@ -69,23 +72,21 @@ class OutputFilter:
 def output_filter(steps_per_second: float, sampling_frequency: float) -> OutputFilter:
     """The filter for one pair of rates [Hz].
 
-    Raises ValueError when the ratio of the rates is not a multiple of RATIO, or no more than RATIO:
-    the first stage would then stop the passband, and the second can not restore it (6 % were left).
+    Raises ValueError when the ratio of the rates is not a multiple of RATIO.
     """
     ratio = steps_per_second / sampling_frequency
-    if abs(ratio / RATIO - round(ratio / RATIO)) > 1e-9 or ratio < LEAST_STAGES * RATIO - 1e-9:
+    if abs(ratio / RATIO - round(ratio / RATIO)) > 1e-9 or ratio < RATIO - 1e-9:
         raise ValueError(
-            f"steps per second / sampling frequency = {ratio:g} must be a multiple of {RATIO}, at"
-            f" least {LEAST_STAGES * RATIO}: choose a sampling frequency of"
-            f" {steps_per_second / RATIO:g} Hz divided by a whole number, {LEAST_STAGES} or more"
+            f"steps per second / sampling frequency = {ratio:g} must be a multiple of {RATIO}:"
+            f" choose a sampling frequency of {steps_per_second / RATIO:g} Hz divided by a whole"
+            " number"
         )
     middle_rate = steps_per_second / RATIO
     stop = 0.5 * sampling_frequency
-    first = _first_stage(stop / steps_per_second)
-    passband = PASS_FRACTION * stop / middle_rate
-    second = np.convolve(
-        _kaiser_lowpass(passband, stop / middle_rate), _droop_compensation(first, passband)
-    )
+    passband, one_stage = PASS_FRACTION * stop / middle_rate, round(ratio / RATIO) == 1
+    first = _first_stage((passband / RATIO) if one_stage else stop / steps_per_second)
+    lowpass = np.ones(1) if one_stage else _kaiser_lowpass(passband, stop / middle_rate)
+    second = np.convolve(lowpass, _droop_compensation(first, passband))
     order = next(
         (
             order

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 
 import numpy as np
 from scipy import sparse
@@ -222,7 +223,8 @@ def _built(
     first_axis = _first_axis(structure.section, line)
     lengths, axes = _element_frames(line, nodes, middles, first_axis)
     beams = beams_in_fluid(beam, stretches, middles)
-    elements = [element_matrices(*each) for each in zip(beams, lengths, axes, strict=True)]
+    frames = zip(beams, map(float, lengths), map(np.ndarray.tobytes, axes), strict=True)
+    elements = [_element_matrices(*frame) for frame in frames]
     stiffness, mass = (_assembled(matrices) for matrices in zip(*elements, strict=True))
     transformation, springs = _end_conditions(structure, line, len(nodes))
     rigid = np.tile(np.eye(3, DOF_PER_NODE), len(nodes))
@@ -243,6 +245,12 @@ def _built(
         viscous=(transformation.T @ viscous @ transformation).tocsr(),
         two_phase=(transformation.T @ two_phase @ transformation).tocsr(),
     )
+
+
+@lru_cache(maxsize=1024)
+def _element_matrices(beam: Beam, length: float, axes: bytes) -> tuple[np.ndarray, np.ndarray]:
+    """Return element_matrices, kept: structures that differ at their ends share their elements."""
+    return element_matrices(beam, length, np.frombuffer(axes).reshape(3, 3))
 
 
 def _first_axis(section: ConfigPart, line: Centreline) -> np.ndarray | None:

@@ -7,15 +7,13 @@ from math import gcd
 import numpy as np
 from scipy import signal
 
-from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.integration.batch import Schedule
 from vibroimpact.integration.kernels.decimation import RATIO
-from vibroimpact.integration.output_filter import LEAST_STAGES, PASS_FRACTION
+from vibroimpact.integration.output_filter import PASS_FRACTION
 
 from .sensed_motion import of_modes, orders
 from .signals import Signals
 
-SLOWEST_HZ = 2000.0  # records are compared at this rate at least, or at their own
 FADE_S = 1.0  # at the ends of a record, before it is integrated
 AHEAD_STEPS = 4000  # beyond the end of a stretch, for the output filter
 MOVING = 0.02  # of the speed of the sensor that moves most
@@ -61,18 +59,18 @@ class Rates:
         return Schedule(self.steps_per_second, self.sampling, start_up_s, duration_s, scheme)
 
 
-def rates_of(sampling: float, integration: ConfigPart) -> Rates:
-    """Return the Rates of records sampled at a frequency in Hz; at least the steps per second of
-    the section integration.
+def decimation_of(sampling: float, slowest_Hz: float) -> int:
+    """Return the decimation of records to a lower sampling frequency, at least the slowest."""
+    return max(int(sampling / slowest_Hz), 1)
+
+
+def rates_of(sampling: float, steps_per_second: float, decimation: int = 1) -> Rates:
+    """Return the Rates of records sampled at a frequency in Hz before decimation, with at least a
+    number of integration steps per second.
     """
-    decimation = max(int(sampling / SLOWEST_HZ), 1)
-    return whole_rates(sampling / decimation, integration, decimation)
-
-
-def whole_rates(sampling: float, integration: ConfigPart, decimation: int = 1) -> Rates:
-    """Return the Rates of runs that are recorded at a frequency in Hz; arguments as of rates_of."""
-    stages = max(LEAST_STAGES, int(np.ceil(integration.steps_per_second / (RATIO * sampling))))
-    return Rates(decimation, sampling, RATIO * stages)
+    own = sampling / decimation
+    stages = max(int(np.ceil(steps_per_second / (RATIO * own))), 1)
+    return Rates(decimation, own, RATIO * stages)
 
 
 def held_band(signals: Signals, rates: Rates, first_mode_Hz: float) -> tuple[float, float]:
