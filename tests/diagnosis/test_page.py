@@ -291,7 +291,7 @@ def test_effects_that_could_not_be_run_are_told(kind):
         probability_none=float(kind == "none"),
         probability_something_else=float(kind == "unknown"),
     )
-    told = "Nothing is known of Hertz contact and preload, which could not be run."
+    told = "Nothing is known of Hertz contact and preload: no trial of them could be integrated"
     page = " ".join(discrepancy_page("campaign", verdict, []).split())
     figure = ranking_figure(verdict)
     for text in (page, figure.caption, "\n".join(summary(verdict))):

@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.diagnosis.measurement.attached_model import attach
+from vibroimpact.diagnosis.measurement.comparable import sampling_rows
 from vibroimpact.diagnosis.measurement.usable import Refused, checks_of_completed, usable
 from vibroimpact.excitation.random_force import band_limited_noise
 
@@ -99,3 +101,12 @@ def test_short_records_are_left_out(study_config, seconds):
     found, checks = usable(campaign, study_config)
     assert list(found["record_name"].values) == ["middle", "high"]
     assert [row["record"] for row in checks if row["check"] == "short records"] == ["low"]
+
+
+@pytest.mark.parametrize(("share", "levels"), [(0.9, ["refuse"]), (2.0, ["warn"]), (9.0, [])])
+def test_records_sampled_too_slowly_for_the_modes_are_told(comparison, share, levels):
+    model = comparison.structure.with_terms(())
+    rate = 2.0 * share * model.frequencies.min() / 0.78125
+    rows = sampling_rows(model, xr.Dataset(attrs={"sampling_frequency": rate}))
+    assert [row["level"] for row in rows] == levels
+    assert all("Sample at" in row["message"] for row in rows)

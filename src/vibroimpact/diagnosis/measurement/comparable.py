@@ -20,6 +20,7 @@ from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.geometry.centreline import build_centreline
 from vibroimpact.geometry.directions import unit_vector
 from vibroimpact.geometry.sections import outer_width
+from vibroimpact.integration.output_filter import PASS_FRACTION
 from vibroimpact.io.units import UnitError, si_factor
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.structure.point_structure import build_point_structure
@@ -37,6 +38,7 @@ LEANS = 0.2
 ON_AXIS = 0.99  # least |cosine| of that normal with an axis of a section that is not round
 SHORTEST_RECORD_S = 2.5  # spectra are averages of segments of 2 s; motion is known between fades
 SHORT = "short records"  # name of the check
+SHOWN = 5.0  # of the first mode of a model: motion that records show at least
 NO_DIRECTION = 1.0e-6  # a shorter vector has no direction
 IDENTIFIED = "model=identified compares without a model"
 
@@ -131,6 +133,20 @@ def model_rows(config: ConfigPart, campaign: xr.Dataset) -> list[dict]:
         return f"measures {still}: it is left out" if still else ""
 
     return _left_out((channel, why(channel)) for channel in compared_channels(campaign))
+
+
+def sampling_rows(model: ModalModel, campaign: xr.Dataset) -> list[dict]:
+    """Return a row of checks if the records show the first mode of a model alone, or none."""
+    rate = float(campaign.attrs["sampling_frequency"])
+    top, first = 0.5 * PASS_FRACTION * rate, float(model.frequencies[model.omega > 0.0].min())
+    if top > SHOWN * first:
+        return []
+    sentence = (
+        f"Sampled at {rate:.4g} Hz, records show motion to {top:.3g} Hz, and the first mode of the"
+        f" model is at {first:.3g} Hz; contact shows in higher ones. Sample at"
+        f" {2.0 * SHOWN * first / PASS_FRACTION:.0f} Hz or more."
+    )
+    return [check_row("sampling", "refuse" if top < first else "warn", sentence)]
 
 
 def contact_force_fault(model: ModalModel, channel: Place) -> str:

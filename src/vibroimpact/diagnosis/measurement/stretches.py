@@ -15,7 +15,7 @@ from .sensed_motion import of_modes, orders
 from .signals import Signals
 
 FADE_S = 1.0  # at the ends of a record, before it is integrated
-AHEAD_STEPS = 4000  # beyond the end of a stretch, for the output filter
+AHEAD = 64  # samples beyond the end of a stretch, for the output filter
 MOVING = 0.02  # of the speed of the sensor that moves most
 NO_GAP_M = 1.0  # if a record has no clearance
 
@@ -143,7 +143,7 @@ def _fade(signals, count):
 def _cut(values, start_s, duration_s, rates):
     """Return (step, channel) of a stretch of values (step, channel), 0 beyond the record's ends."""
     first = round(start_s * rates.sampling) * rates.steps_per_sample - 1
-    count = round(duration_s * rates.steps_per_second) + AHEAD_STEPS
+    count = round(duration_s * rates.steps_per_second) + AHEAD * rates.steps_per_sample
     piece = np.zeros((count, values.shape[1]))
     begin, end = max(first, 0), min(first + count, len(values))
     piece[begin - first : end - first] = values[begin:end]

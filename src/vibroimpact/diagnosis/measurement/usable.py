@@ -142,12 +142,13 @@ def refuse(sentence: str, checks: Sequence[dict[str, Any]]) -> NoReturn:
 
 
 def _against_model(config: Config, campaign: xr.Dataset) -> list[dict[str, Any]]:
-    """Return rows for channels that do not match the model attached to the campaign: contact forces
-    that it lacks, and channels that contradict the linear model at the lowest level: swapped,
-    reversed, or in another unit.
+    """Return rows for what does not match the model attached to the campaign: a sampling frequency
+    too low for its modes, contact forces that it lacks, and channels that contradict the linear
+    model at the lowest level: swapped, reversed, or in another unit.
     """
     model, measured = attach(config, campaign), relative_to_base(campaign_signals(campaign))
     rows = comparable.contact_force_rows(model, campaign)
+    rows += comparable.sampling_rows(model, campaign)
     record = measured.lowest()
     spectra = None if record is None else transfer(measured, record)
     if record is None or spectra is None:

@@ -255,7 +255,8 @@ class Verdict(_Content):
 def not_run_sentence(ids: Iterable[str]) -> str:
     """Return a sentence, after a space, on effects that could not be run; empty without any."""
     words = effects_in_words(ids)
-    return f" Nothing is known of {words}, which could not be run." if words else ""
+    cause = "no trial of them could be integrated, try a larger integration.steps_per_second"
+    return f" Nothing is known of {words}: {cause}." if words else ""
 
 
 def not_testable(
