@@ -13,6 +13,7 @@ from vibroimpact.diagnosis.coordinates import (
 )
 from vibroimpact.diagnosis.explanations import Point, Term
 from vibroimpact.diagnosis.gauss_newton import fit, fits
+from vibroimpact.diagnosis.run_cost import SIMULATED
 
 
 def test_coordinates_come_back(comparison):
@@ -111,3 +112,19 @@ def test_fits_side_by_side_are_those_of_one_at_a_time(comparison):
         alone = fit(bench, *start, 2)
         assert together.objective == alone.objective
         np.testing.assert_array_equal(together.x, alone.x)
+
+
+def test_a_fit_that_can_not_reach_the_best_is_given_up(comparison):
+    bench = played(comparison.screened(), Point((Term("gap", "all", (0.8,)),)))
+    terms = Term("gap", "all", (0.9,)), Term("added_mass", "arc_900_0mm", (0.2,))
+    begun = [Point((term,)) for term in terms]
+    starts = [(point, effect_coordinates(point.terms, comparison.sizes)) for point in begun]
+
+    def runs(*chosen):
+        before = SIMULATED["records"]
+        return fits(bench, chosen, 12), SIMULATED["records"] - before
+
+    (best, _), together = runs(*starts)
+    alone = [runs(start) for start in starts]
+    assert best.objective == alone[0][0][0].objective
+    assert together < sum(number for _, number in alone)

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -26,6 +27,7 @@ FAR = 2.5  # LARGEST_STEP may be too short for a long way: a fit to the end trie
 LARGEST_STEP = 1.0  # of the coordinate of an effect
 TRIES = 3
 SETTLED = 2.0e-3  # gain per effective line, below which it ends
+FEWEST = 3  # passes before a fit may be given up
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +50,17 @@ class Fit:
     def deviation(self) -> np.ndarray:
         """Return (coordinate,): one standard deviation of the coordinates."""
         return np.sqrt(np.diag(np.linalg.pinv(self.information)))
+
+
+@dataclass(frozen=True, eq=False)
+class _Asked:
+    """Points that a fit wants run, its objective so far, and the one that it reaches if it goes on
+    at the pace of its last pass.
+    """
+
+    points: list[Point]
+    objective: float = np.inf
+    within_reach: float = -np.inf
 
 
 def linearised(
@@ -86,7 +99,8 @@ def fits(
     shares: Sequence[float] = (*SHARES, FAR),
 ) -> list[Fit]:
     """Return the Fit of coordinates from each (Point, coordinates). All take their steps together,
-    so that their runs fill the lanes of the kernel; none depends on another.
+    so that their runs fill the lanes of the kernel. A fit that would not reach the best one at the
+    pace of its last pass is given up.
 
     passes: at most. known (nuisance, stretch, channel, line): columns of the nuisances among
     the coordinates, which are kept; if None, they are found anew in each pass. shares: of a step
@@ -96,14 +110,25 @@ def fits(
     asked = {number: next(own) for number, own in running.items()}
     done: dict[int, Fit] = {}
     while asked:
-        lines = iter(holding_lines(bench, [point for own in asked.values() for point in own]))
-        for number, points in list(asked.items()):
-            try:
-                asked[number] = running[number].send(np.stack([next(lines) for _ in points]))
-            except StopIteration as end:
-                done[number] = end.value
-                del asked[number]
+        wanted = [point for own in asked.values() for point in own.points]
+        lines = iter(holding_lines(bench, wanted))
+        for number, own in list(asked.items()):
+            found = np.stack([next(lines) for _ in own.points])
+            _advance(running, asked, done, number, found)
+        objectives = [own.objective for own in asked.values()]
+        best = min(objectives + [own.objective for own in done.values()])
+        for number in [each for each, own in asked.items() if own.within_reach > best]:
+            _advance(running, asked, done, number, None)
     return [done[number] for number in running]
+
+
+def _advance(running, asked, done, number, lines):
+    """Hand lines to a fit, None to end it; it asks for more Points, or is done."""
+    try:
+        asked[number] = running[number].send(lines)
+    except StopIteration as end:
+        done[number] = end.value
+        del asked[number]
 
 
 def fit(
@@ -124,14 +149,14 @@ def _fit(
     passes: int,
     known: np.ndarray | None,
     shares: Sequence[float],
-) -> Generator[list[Point], np.ndarray, Fit]:
-    """Yield Points to be run, take their lines, and return the Fit."""
+) -> Generator[_Asked, Any, Fit]:
+    """Yield Points to be run, take their lines, or None to end, and return the Fit."""
     low, high = bounds(rows)
     sd = np.array([row.sd for row in rows])
     own = np.array([row.of_effect for row in rows], bool)
     x = np.clip(to_vector(start, rows), low, high)
     point = to_point(x, rows, start)
-    [lines] = yield [point]
+    [lines] = yield _Asked([point])
     slope = np.zeros((len(rows), *lines.shape), np.complex64)
     if known is not None:
         slope[~own] = known
@@ -139,11 +164,17 @@ def _fit(
     value = misfit(bench, lines) + 0.5 * float(np.sum((x / sd) ** 2))
     information, damping = np.diag(1.0 / sd**2), 1.0e-3
     settled = SETTLED * INDEPENDENT * lines.size
-    for _ in range(passes if np.isfinite(value) else 0):
+    before, reach = value, -np.inf
+    for number in range(passes if np.isfinite(value) else 0):
+        if number >= FEWEST:
+            reach = value - (passes - number) * (before - value)
         chosen = [row for row, new in zip(rows, renewed, strict=True) if new]
         moved, size = _moved(point, chosen)
         if moved:
-            slope[renewed] = _derivatives((yield moved), lines, size)
+            found = yield _Asked(moved, value, reach)
+            if found is None:
+                break
+            slope[renewed] = _derivatives(found, lines, size)
         weight = whitening(bench, lines)
         white, residual = slope * weight, lines * weight
         information, pull = _normal(white, residual, x, sd)
@@ -154,7 +185,7 @@ def _fit(
             tried = [np.clip(x + share * step, low, high) for share in shares]
             tried.append(np.clip(x + _step(lowest[0], lowest[1], damping, own), low, high))
             points = [to_point(each, rows, start) for each in tried]
-            found = yield points
+            found = yield _Asked(points, value)
             values = [
                 misfit(bench, each) + 0.5 * float(np.sum((at / sd) ** 2))
                 for each, at in zip(found, tried, strict=True)
