@@ -66,7 +66,7 @@ FAR: dict[str, Sequence[tuple[float, ...]]] = {
     "force_misalignment": [(-0.5,), (0.5,)],
     "lateral_stinger": [(0.5, 0.0), (4.0, 0.0)],
     "shaker_interaction": [(0.1, 2.0, 0.0)],
-    "cubic_stiffness": [(10.0,)],
+    "cubic_stiffness": [(0.3,), (1.7,), (10.0,)],
     "quadratic_drag": [(0.5,), (3.0,)],
     "fluid_added_mass_damping": [(0.1, 2.0), (0.5, 6.0)],
     "coulomb_friction": [(0.1,), (0.5,)],
@@ -92,7 +92,6 @@ AT_A_KNOWN_PLACE: dict[str, Sequence[tuple[float, ...]]] = FAR | {
     law: [*((share, 1.0) for share in (0.2, 0.3, 0.45, 0.7, 1.0, 1.5)), (0.2, 100.0), (0.6, 100.0)]
     for law in ("clearance", "one_sided_stop")
 }
-AT_A_KNOWN_PLACE["cubic_stiffness"] = [(0.3,), (1.0,), (3.0,), (10.0,)]
 
 
 def locations(

@@ -9,7 +9,7 @@ from scipy import signal
 
 from vibroimpact.integration.batch import Schedule
 from vibroimpact.integration.kernels.decimation import RATIO
-from vibroimpact.integration.output_filter import PASS_FRACTION
+from vibroimpact.integration.output_filter import LEAST_STAGES, PASS_FRACTION
 
 from .sensed_motion import of_modes, orders
 from .signals import Signals
@@ -64,12 +64,14 @@ def decimation_of(sampling: float, slowest_Hz: float) -> int:
     return max(int(sampling / slowest_Hz), 1)
 
 
-def rates_of(sampling: float, steps_per_second: float, decimation: int = 1) -> Rates:
+def rates_of(
+    sampling: float, steps_per_second: float, decimation: int = 1, stages: int = LEAST_STAGES
+) -> Rates:
     """Return the Rates of records sampled at a frequency in Hz before decimation, with at least a
-    number of integration steps per second.
+    number of integration steps per second. stages: of the output filter's decimation at least.
     """
     own = sampling / decimation
-    stages = max(int(np.ceil(steps_per_second / (RATIO * own))), 1)
+    stages = max(int(np.ceil(steps_per_second / (RATIO * own))), stages)
     return Rates(decimation, own, RATIO * stages)
 
 
