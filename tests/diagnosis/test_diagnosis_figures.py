@@ -191,13 +191,13 @@ def test_force_error_is_that_of_the_law():
     assert force_error(evidence, 1, [1, 3]) == pytest.approx(noise, rel=0.05)
 
 
-def test_level_is_shown_where_the_completed_model_gains_most():
+def test_the_highest_level_at_which_the_completed_model_gains_is_shown():
     evidence = made_up_evidence()
-    assert telling_level(evidence) == 0
     levels = xr.concat([evidence.isel(law_stretch=[0])] * 2, "law_stretch", data_vars="minimal")
-    levels = levels.assign(model_force=levels["model_force"].copy())
-    levels["model_force"].values[0, 0] = levels["model_force"].values[1, 0]  # no gain at the first
     assert telling_level(levels) == 1
+    levels = levels.assign(model_force=levels["model_force"].copy())
+    levels["model_force"].values[0, 1] = levels["model_force"].values[1, 1]  # no gain at the last
+    assert telling_level(levels) == 0
 
 
 def test_median_law_has_the_gap_and_the_stiffness():

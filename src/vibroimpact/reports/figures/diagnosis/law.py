@@ -21,7 +21,7 @@ BINS, LEAST_IN_BIN = 36, 6
 IN_CONTACT = 0.15  # of the largest force: from it on a place is drawn as pressed
 SCATTER = 4.0  # times the median force, which is scatter if contacts are short
 ALIVE = 0.03  # of the largest force of all places
-CLEARLY = 1.3  # times the gain of the first level
+ALMOST = 0.25  # of the largest gain, which another level may lack
 LARGEST = 0.995  # quantile that stands for the largest
 
 CAPTION = (
@@ -85,16 +85,17 @@ def _unseen(evidence, level, unseen):
 
 
 def telling_level(evidence: xr.Dataset) -> int:
-    """Return the number of the level at which the completed model gains most in its forces at all
-    places; the first, with the sharpest contact, unless another gains clearly more.
+    """Return the number of the highest level, which shows most of a law, at which the completed
+    model gains nearly as much in its forces at all places as at any other.
     """
     places, gains = list(range(evidence.sizes["place"])), []
     for level in range(evidence.sizes["law_stretch"]):
         own = evidence.isel(law_stretch=[level])
         before, after = (min(force_error(own, state, places), 2.0) for state in (0, 1))
         gains.append(before - after)
-    best = int(np.argmax(np.nan_to_num(gains)))
-    return best if gains[best] > CLEARLY * max(gains[0], 0.0) else 0
+    gained = np.nan_to_num(gains)
+    least = gained.max() - ALMOST * abs(gained.max())
+    return int(np.flatnonzero(gained >= least)[-1])
 
 
 def force_error(evidence: xr.Dataset, state: int, places: list[int]) -> float:
