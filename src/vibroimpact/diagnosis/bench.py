@@ -62,7 +62,7 @@ def _runs(bench: Bench, points: Sequence[Point]) -> tuple[list[HeldLane], np.nda
     index = np.full((len(points), len(bench.stretches)), -1)
     for number, point in enumerate(points):
         try:
-            model, chain = bench.structure.model(point), bench.structure.measuring(point)
+            model, chain = bench.structure.held_model(point), bench.structure.measuring(point)
         except (ConfigError, ValueError):
             continue
         for place, stretch in enumerate(bench.stretches):

@@ -82,7 +82,7 @@ def held_state(bench: Bench, point: Point, free: Sequence[tuple[int, int]]) -> H
 
     Raises ConfigError or ValueError for values that no structure can have.
     """
-    model, chain = bench.structure.model(point), bench.structure.measuring(point)
+    model, chain = bench.structure.held_model(point), bench.structure.measuring(point)
     places = places_of(model)
     # the places are further sensors that are not held
     count = len(places.names)

@@ -31,9 +31,9 @@ KEPT_MODELS = 256
 SLOWEST_HZ, PER_FIRST_MODE = 2000.0, 20.0
 TURNED = "force_misalignment"
 SEEN = 1.0e-3  # of the largest shape at a sensor or force: a smaller one is not seen
-# Modes are kept to so many times the sampling frequency of the records. Those above change the
-# holding force of a right model by 1 % of its power at the highest load.
-MODES_TO = 1.5
+# Modes are kept to so many times the sampling frequency of the records, in free runs and in held
+# ones: the others change the holding force of a right model by a per cent of its power.
+MODES_TO, HELD_TO = 3.0, 1.5
 # Arrays of a ModalModel whose first axis is the mode, other than omega and damping.
 BY_MODE = tuple(name for name in MODE_FIELDS if name not in ("omega", "damping"))
 
@@ -110,7 +110,7 @@ class Structure:
     """The model as given, attached to a campaign; it makes the models of Points.
 
     scale (channel,): displacement per unit of a channel's quantity. decimation: of the records that
-    are compared with it. dropped: number of modes above their range.
+    are compared with it. dropped, unheld: number of modes that free runs and held ones leave out.
     """
 
     config: Config
@@ -120,7 +120,9 @@ class Structure:
     basis: Basis | None = field(init=False)
     decimation: int = field(init=False)
     dropped: int = field(init=False)
+    unheld: int = field(init=False)
     with_terms: Callable[[tuple[Term, ...]], ModalModel] = field(init=False)
+    lower: Callable[[ModalModel], ModalModel] = field(init=False)
 
     def __post_init__(self) -> None:
         own = attach(self.config, self.campaign)
@@ -129,12 +131,14 @@ class Structure:
             "scale": displacement_scale(own, self.campaign["channel_kind"].values),
             "basis": attached_basis(self.config, self.campaign),
             "with_terms": lru_cache(maxsize=KEPT_MODELS)(self._with_terms),
+            "lower": lru_cache(maxsize=KEPT_MODELS)(self._lower),
         }
         sampling = float(self.campaign.attrs["sampling_frequency"])
         first = float(own.frequencies[own.omega > 0.0].min())
         decimation = decimation_of(sampling, max(SLOWEST_HZ, PER_FIRST_MODE * first))
         fields["decimation"] = decimation
-        fields["dropped"] = int(np.sum(own.frequencies > MODES_TO * sampling / decimation))
+        for name, to in (("dropped", MODES_TO), ("unheld", HELD_TO)):
+            fields[name] = int(np.sum(own.frequencies > to * sampling / decimation))
         for name, value in fields.items():
             object.__setattr__(self, name, value)
 
@@ -167,10 +171,16 @@ class Structure:
     def _with_terms(self, terms: tuple[Term, ...]) -> ModalModel:
         """Return the attached model with terms, its sensors scaled to displacements."""
         model = attach(self.configuration(terms), self.campaign, self.basis)
-        kept = slice(model.modes - self.dropped)
-        values = {name: getattr(model, name)[kept] for name in ("omega", "damping", *BY_MODE)}
-        values["sensor_shapes"] = values["sensor_shapes"] * self.scale
-        return replace(model, **values)
+        model = replace(model, sensor_shapes=model.sensor_shapes * self.scale)
+        return _without_highest(model, self.dropped)
+
+    def _lower(self, model: ModalModel) -> ModalModel:
+        """Return a model of `model` with the modes that a held run needs."""
+        return _without_highest(model, self.unheld - self.dropped)
+
+    def held_model(self, point: Point) -> ModalModel:
+        """Return the model of a Point for a held run; see `model`."""
+        return self.lower(self.model(point))
 
     def model(self, point: Point) -> ModalModel:
         """Return the attached model of a Point.
@@ -211,6 +221,13 @@ def seen(model: ModalModel) -> np.ndarray:
     """
     shapes = np.abs(np.hstack([model.sensor_shapes, model.drive_shapes]))
     return np.max(shapes / np.maximum(shapes.max(axis=0), 1.0e-300), axis=1) > SEEN
+
+
+def _without_highest(model: ModalModel, number: int) -> ModalModel:
+    """Return a model without a number of its modes."""
+    kept = slice(model.modes - number)
+    names = ("omega", "damping", *BY_MODE)
+    return replace(model, **{name: getattr(model, name)[kept] for name in names})
 
 
 def _on_modes(values, chosen):

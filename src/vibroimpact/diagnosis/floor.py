@@ -75,7 +75,7 @@ def _played(
     The run begins before the stretch, so that the held run does not know its start, as with a
     measurement.
     """
-    model, chain = bench.structure.model(point), bench.structure.measuring(point)
+    model, chain = bench.structure.held_model(point), bench.structure.measuring(point)
     led, lead = comparison.led(bench, LEAD_S)
     schedule = replace(bench.schedule, duration=bench.schedule.duration + lead)
     free = np.zeros(len(chain.gain))

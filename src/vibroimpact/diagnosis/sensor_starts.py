@@ -28,7 +28,7 @@ def sensor_terms(bench: Bench, point: Point) -> list[Term]:
     tried = np.flatnonzero(stretch.moving & np.any(stretch.motion, axis=0))
     if len(tried) < 2:
         return []
-    model, chain = bench.structure.model(point), bench.structure.measuring(point)
+    model, chain = bench.structure.held_model(point), bench.structure.measuring(point)
     lanes = [lane_of(bench, stretch, model, chain, [int(channel)]) for channel in tried]
     records = hold(lanes, bench.schedule, bench.threads, bench.held_below_Hz)
     measured = in_band(bench, sampled_motion(bench, 0, np.zeros(len(names))), bench.band, 1)
