@@ -191,7 +191,7 @@ def test_force_error_is_that_of_the_law():
     assert force_error(evidence, 1, [1, 3]) == pytest.approx(noise, rel=0.05)
 
 
-def test_the_highest_level_at_which_the_completed_model_gains_is_shown():
+def test_the_highest_level_at_which_the_model_gains_is_shown():
     evidence = made_up_evidence()
     levels = xr.concat([evidence.isel(law_stretch=[0])] * 2, "law_stretch", data_vars="minimal")
     assert telling_level(levels) == 1
