@@ -228,5 +228,5 @@ class Comparison:
 def _steps(model: ModalModel, integration: ConfigPart) -> float:
     """Return the integration steps per second of held runs; integration: of free ones."""
     steps, scheme = integration.steps_per_second, integration.scheme
-    contraction = contact_contraction(model, 1.0 / steps, scheme)
+    contraction = np.nan_to_num(contact_contraction(model, 1.0 / steps, scheme), nan=np.inf)
     return steps * float(np.clip(np.sqrt(contraction / CONTRACTION), FEWER_STEPS, 1.0))
