@@ -12,7 +12,7 @@ from vibroimpact.integration.held_run import HeldLane, hold
 
 def played(bench: Bench, point: Point) -> Bench:
     """A Bench whose measured motion is that of a Point, run free from rest under the same force."""
-    model = bench.structure.model(point)
+    model = bench.structure.held_model(point)
     free = np.zeros(model.sensor_shapes.shape[1])
     runs = [
         HeldLane(model, each.gap, each.force, np.zeros_like(each.motion), free)

@@ -15,7 +15,7 @@ from .sensed_motion import of_modes, orders
 from .signals import Signals
 
 FADE_S = 1.0  # at the ends of a record, before it is integrated
-AHEAD = 64  # samples beyond the end of a stretch, for the output filter
+AHEAD = 400  # samples beyond the end of a stretch; the output filter needs 37
 MOVING = 0.02  # of the speed of the sensor that moves most
 NO_GAP_M = 1.0  # if a record has no clearance
 
