@@ -50,7 +50,7 @@ class Comparison:
     def __post_init__(self) -> None:
         model = self.structure.with_terms(())
         rate, steps = self.signals.rate, _steps(model, self.structure.config.integration)
-        rates = rates_of(rate, steps, self.structure.decimation, 1)
+        rates = rates_of(rate, steps, self.structure.decimation, stages=1)
         elastic = model.omega > 0.0
         first = float(model.omega[elastic].min())
         band = held_band(self.signals, rates, first / (2.0 * np.pi))
