@@ -16,7 +16,7 @@ from .lanes import (
     store,
     where,
 )
-from .panels import PANEL, panel_plus_vector, panel_zero, store_panel
+from .panels import PANEL, store_tile, tile_plus_vector, tile_zero
 from .tables import QUIET, STEPS_WITHOUT_FORCE
 
 NO_FORCE = 1e-300  # N, below which a force is none
@@ -36,15 +36,15 @@ def apply_compliance(modal, force, deflection, bearing):
         if LANES == 1:
             at = modal.block_compliance_start[g]
             for r in range(row0, row_f, PANEL):
-                rows = panel_zero()
+                rows = tile_zero()
                 for k in range(count):
                     s = bearing[k]
                     from_force = at + (s - row0) * PANEL
-                    rows = panel_plus_vector(
+                    rows = tile_plus_vector(
                         modal.block_compliance, from_force, load(force, s), rows
                     )
                 at += (row_f - row0) * PANEL
-                store_panel(deflection, r, rows)
+                store_tile(deflection, r, rows)
             continue
         stride = modal.row_start[g + 1] - row0
         at = modal.compliance_start[g] - row0

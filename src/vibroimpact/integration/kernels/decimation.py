@@ -7,12 +7,21 @@ for the modes, then the supports' resultants, then the drive forces.
 
 from .compiled import entry_point, inlined
 from .lanes import LANES, add_to, clear, fetch_to_write, fma, load, spread, spread_from, store
-from .panels import PANEL, load_panel, panel_plus_common, store_panel, vector_plus_dot
+from .panels import (
+    PANEL,
+    ROWS,
+    TILE,
+    load_tile,
+    plus_dots,
+    rows_zero,
+    store_tile,
+    tile_plus_common,
+)
 
 RATIO = 5  # decimation of the first stage
 SLOTS = 6  # outputs of the first stage that one step contributes to
 BEHIND = SLOTS // 2 - 1  # ticks from the centre of an output to the step that completes it
-CHANNEL_BLOCK = 4  # output channels projected at a time
+CHANNEL_BLOCK = PANEL // 2  # entries of a group come in multiples of it, whatever ROWS is
 
 
 @inlined
@@ -23,15 +32,15 @@ def filter_modes(modal, state, output, tick):
     for g in range(modal.mode_start.size - 1):
         if state.group_active[g] == 0:
             continue
-        for slot in range(SLOTS):
-            at = ((tick + slot) % SLOTS) * width
-            for i in range(modal.mode_start[g], modal.mode_start[g + 1], PANEL):
-                total = load_panel(state.filter_sums, at + i)
+        for i in range(modal.mode_start[g], modal.mode_start[g + 1], TILE):
+            for slot in range(SLOTS):
+                at = ((tick + slot) % SLOTS) * width + i
+                total = load_tile(state.filter_sums, at)
                 for phase in range(RATIO):
                     weight = spread(output.weights[phase, slot])
-                    q = load_panel(state.q, phase * modes + i)
-                    total = panel_plus_common(weight, q, total)
-                store_panel(state.filter_sums, at + i, total)
+                    q = load_tile(state.q, phase * modes + i)
+                    total = tile_plus_common(weight, q, total)
+                store_tile(state.filter_sums, at, total)
 
 
 @inlined
@@ -55,23 +64,16 @@ def filter_forces(modal, state, output, work, drive, first, forces, touched, pha
 @inlined
 def project_channels(modal, g, output, array, base, entries, channels):
     """Add the modes of group g, in ``array`` from vector ``base`` on, to the output channels of
-    ``entries`` (first, end), CHANNEL_BLOCK at a time.
+    ``entries`` (first, end), ROWS at a time.
     """
     first = modal.mode_start[g]
     width = modal.mode_start[g + 1] - first
-    for e in range(entries[0], entries[1], CHANNEL_BLOCK):
-        a, b, c, d = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-        at = output.shape_start[e]
+    for e in range(entries[0], entries[1], ROWS):
+        at, sums = output.shape_start[e], rows_zero()
         for i in range(0, width, PANEL):
-            q = load_panel(array, base + first + i)
-            a = vector_plus_dot(output.shapes, at + i, q, a)
-            b = vector_plus_dot(output.shapes, at + width + i, q, b)
-            c = vector_plus_dot(output.shapes, at + 2 * width + i, q, c)
-            d = vector_plus_dot(output.shapes, at + 3 * width + i, q, d)
-        add_to(channels, output.channel[e], a)
-        add_to(channels, output.channel[e + 1], b)
-        add_to(channels, output.channel[e + 2], c)
-        add_to(channels, output.channel[e + 3], d)
+            sums = plus_dots(output.shapes, at + i, width, array, base + first + i, sums)
+        for k in range(ROWS):
+            add_to(channels, output.channel[e + k], sums[k])
 
 
 @inlined

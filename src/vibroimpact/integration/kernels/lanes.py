@@ -14,6 +14,7 @@ multiply-add is written `fma`.
 import operator
 
 from llvmlite import ir
+from llvmlite.binding import get_host_cpu_features
 from numba import types
 from numba.core import cgutils
 from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
@@ -25,6 +26,7 @@ from .compiled import inlined
 MOST_LANES = 8
 _number = __package__.rpartition("_of_")[2]
 LANES = int(_number) if _number.isdigit() else MOST_LANES
+REGISTER_LANES = 8 if get_host_cpu_features().get("avx512f") else 4
 
 DOUBLE = ir.DoubleType()
 INT32 = ir.IntType(32)

@@ -30,29 +30,32 @@ from .decimation import RATIO, filter_forces, filter_modes, finish_output
 from .fluid import push_fluid
 from .force_laws import all_forces
 from .holding import hold_sensors
-from .lanes import LANES, clear, fma, load, spread_from, store
+from .lanes import LANES, clear, fma, load, spread, spread_from, store
 from .panels import (
     PANEL,
-    load_panel,
-    panel_difference,
-    panel_plus_scaled,
-    panel_plus_vector,
-    panel_product,
-    panel_sum,
-    panel_zero,
-    store_panel,
-    vector_plus_dot,
+    ROWS,
+    TILE,
+    even_and_odd_plus_dot,
+    load_rows,
+    load_tile,
+    plus_dots,
+    store_tile,
+    tile_difference,
+    tile_plus_scaled,
+    tile_plus_vector,
+    tile_product,
+    tile_sum,
+    tile_zero,
 )
+from .references import by_reference
 from .subnormals import flush_subnormals, restore_mode
 from .tables import QUIET, STEPS_DONE, STEPS_WITHOUT_FORCE
 from .tallies import tally_contact, tally_displacement, tally_drive, tally_laws, tally_stress
 
 
 @inlined
-def add_panel_to_rows(modal, g, i, panel, q, rows):
-    """Add the displacement of group g's rows by one panel of its modes, from mode i on; panel: as
-    in the array q.
-    """
+def add_panel_to_rows(modal, g, i, q, rows):
+    """Add the displacement of group g's rows by one panel of its modes, q from mode i on."""
     row0, row1 = modal.row_start[g], modal.row_start[g + 1]
     if LANES == 1:
         blocks = (row1 - row0 + PANEL - 1) // PANEL
@@ -62,19 +65,27 @@ def add_panel_to_rows(modal, g, i, panel, q, rows):
             at += PANEL * PANEL
     else:
         at = modal.shape_start[g] + (i - modal.mode_start[g]) * (row1 - row0)
-        for r in range(row0, row1):
-            store(rows, r, vector_plus_dot(modal.shapes, at, panel, load(rows, r)))
+        r = row0
+        while r + ROWS <= row1:
+            sums = plus_dots(modal.shapes, at, PANEL, q, i, load_rows(rows, r))
+            for k in range(ROWS):
+                store(rows, r + k, sums[k])
+            r += ROWS
+            at += ROWS * PANEL
+        while r < row1:
+            store(rows, r, plus_dots(modal.shapes, at, PANEL, q, i, (load(rows, r),))[0])
+            r += 1
             at += PANEL
 
 
 @inlined
 def add_modes_to_rows(shapes, at, q, i, rows, r):
-    """vector_plus_dot of one run on the PANEL rows from r on, side by side."""
-    even, odd = load_panel(rows, r), panel_zero()
+    """plus_dots of one run on the PANEL rows from r on, side by side."""
+    even, odd = load_tile(rows, r), tile_zero()
     for m in range(0, PANEL, 2):
-        even = panel_plus_vector(shapes, at + m * PANEL, load(q, i + m), even)
-        odd = panel_plus_vector(shapes, at + (m + 1) * PANEL, load(q, i + m + 1), odd)
-    store_panel(rows, r, panel_sum(even, odd))
+        even = tile_plus_vector(shapes, at + m * PANEL, load(q, i + m), even)
+        odd = tile_plus_vector(shapes, at + (m + 1) * PANEL, load(q, i + m + 1), odd)
+    store_tile(rows, r, tile_sum(even, odd))
 
 
 @inlined
@@ -83,8 +94,7 @@ def predict_rows(modal, state, u_free):
     clear(u_free)
     for g in range(modal.mode_start.size - 1):
         for i in range(modal.mode_start[g], modal.mode_start[g + 1], PANEL):
-            panel = load_panel(state.q_next_free, i)
-            add_panel_to_rows(modal, g, i, panel, state.q_next_free, u_free)
+            add_panel_to_rows(modal, g, i, state.q_next_free, u_free)
 
 
 @inlined
@@ -127,23 +137,27 @@ def correct_and_predict(modal, state, tally, work, in_contact, phase):
         first_row = row0 if in_contact else modal.force_row_start[g]
         for i in range(first, modal.mode_start[g + 1], PANEL):
             at = modal.shape_start[g] + (i - first) * (row1 - row0)
-            p = panel_zero()
-            for r in range(first_row, row1):
-                p = panel_plus_vector(modal.shapes, at + (r - row0) * PANEL, load(work.force, r), p)
-            q = panel_plus_scaled(modal.mode_compliance, i, p, load_panel(state.q_next_free, i))
-            step = panel_difference(q, load_panel(state.q, before + i))
-            dissipated = vector_plus_dot(
-                modal.damping_over_dt, i, panel_product(step, step), dissipated
-            )
-            store_panel(state.q, after + i, q)
-            shifted = panel_plus_scaled(modal.force_shift, i, p, q)
-            dq = panel_plus_scaled(modal.force_gain, i, p, panel_zero())
-            dq = panel_plus_scaled(modal.decay, i, load_panel(state.dq, i), dq)
-            dq = panel_plus_scaled(modal.restoring, i, shifted, dq)
-            store_panel(state.dq, i, dq)
-            q_next_free = panel_sum(shifted, dq)
-            store_panel(state.q_next_free, i, q_next_free)
-            add_panel_to_rows(modal, g, i, q_next_free, state.q_next_free, work.u_free)
+            odd = spread(0.0)
+            for tile in range(0, PANEL, TILE):
+                j = i + tile
+                p = tile_zero()
+                for r in range(first_row, row1):
+                    from_row = at + tile + (r - row0) * PANEL
+                    p = tile_plus_vector(modal.shapes, from_row, load(work.force, r), p)
+                q = tile_plus_scaled(modal.mode_compliance, j, p, load_tile(state.q_next_free, j))
+                step = tile_difference(q, load_tile(state.q, before + j))
+                dissipated, odd = even_and_odd_plus_dot(
+                    modal.damping_over_dt, j, tile_product(step, step), dissipated, odd
+                )
+                store_tile(state.q, after + j, q)
+                shifted = tile_plus_scaled(modal.force_shift, j, p, q)
+                dq = tile_plus_scaled(modal.force_gain, j, p, tile_zero())
+                dq = tile_plus_scaled(modal.decay, j, load_tile(state.dq, j), dq)
+                dq = tile_plus_scaled(modal.restoring, j, shifted, dq)
+                store_tile(state.dq, j, dq)
+                store_tile(state.q_next_free, j, tile_sum(shifted, dq))
+            dissipated = dissipated + odd
+            add_panel_to_rows(modal, g, i, state.q_next_free, work.u_free)
     store(tally.dissipated, 0, dissipated)
 
 
@@ -184,6 +198,8 @@ def initial_forces(modal, contact, laws, state, work):
     """Fill state.row_force, row_deflection and their values of the step before with the forces of
     contacts and elements at the initial state.row_displacement and row_velocity.
     """
+    modal, contact, laws = by_reference(modal), by_reference(contact), by_reference(laws)
+    state, work = by_reference(state), by_reference(work)
     rows = state.row_velocity.size // LANES
     memory_weight = modal.velocity_weights[1]
     clear(work.new_force)
@@ -209,6 +225,10 @@ def march(modal, contact, laws, hold, fluid, state, tally, output, trace, work, 
     input and output of the channels of held sensors. Fills output.values (one column per tick: the
     filter output centred BEHIND ticks before), adds to ``tally`` and advances ``state`` in place.
     """
+    modal, contact, laws = by_reference(modal), by_reference(contact), by_reference(laws)
+    hold, fluid, state = by_reference(hold), by_reference(fluid), by_reference(state)
+    tally, output = by_reference(tally), by_reference(output)
+    trace, work = by_reference(trace), by_reference(work)
     mode = flush_subnormals()
     forces = drive.shape[1]
     special = laws.contact_point.size + laws.element_row.size > 0
@@ -236,10 +256,8 @@ def march(modal, contact, laws, hold, fluid, state, tally, output, trace, work, 
             tally_drive(modal, state, tally, work, in_contact, forces)
             if phase == RATIO - 1:
                 keep_displacements(modal, state)
-            if quiet:
-                store_rows(modal, special, state, trace, work.u_free, work, True)
-            else:
-                store_rows(modal, special, state, trace, work.u, work, False)
+            u = work.u_free if quiet else work.u
+            store_rows(modal, special, state, trace, u, work, quiet)
             correct_and_predict(modal, state, tally, work, in_contact, phase)
             if output.stress_weight[phase] > 0.0:
                 tally_stress(modal, state, tally, output, phase, work.channels)
