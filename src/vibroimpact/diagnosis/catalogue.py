@@ -87,10 +87,17 @@ FAR: dict[str, Sequence[tuple[float, ...]]] = {
     "foliate_hexafoil": _turned("foliate_hexafoil", 0.6),
 }
 
-# The same at a place that is known: a soft obstacle gains from two thirds of its right distance on.
+# The same at a place that is known. A soft obstacle gains from two thirds of its right distance on.
+# The sizes are those of the drive, which may be at a stiff end: springs elsewhere are far softer.
+OBSTACLE = [
+    *((share, 1.0) for share in (0.2, 0.3, 0.45, 0.7, 1.0, 1.5)),
+    *((near, 100.0) for near in (0.2, 0.6)),
+]
 AT_A_KNOWN_PLACE: dict[str, Sequence[tuple[float, ...]]] = FAR | {
-    law: [*((share, 1.0) for share in (0.2, 0.3, 0.45, 0.7, 1.0, 1.5)), (0.2, 100.0), (0.6, 100.0)]
-    for law in ("clearance", "one_sided_stop")
+    "cubic_stiffness": [(3.0e-3,), (0.03,), *FAR["cubic_stiffness"]],
+    "saturation_stiffness": [(0.02, 1.0), (0.2, 1.0), *FAR["saturation_stiffness"]],
+    "clearance": OBSTACLE,
+    "one_sided_stop": OBSTACLE,
 }
 
 
