@@ -15,6 +15,8 @@ import os
 import time
 from pathlib import Path
 
+from llvmlite.binding import get_host_cpu_name
+
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 from evidence.benchmarks.machine import allowed_cores
 
@@ -27,6 +29,7 @@ from evidence.benchmarks.cores import two_cores  # noqa: E402
 from evidence.benchmarks.figure import draw  # noqa: E402
 from evidence.benchmarks.growth import growth_points  # noqa: E402
 from evidence.benchmarks.machine import description  # noqa: E402
+from evidence.benchmarks.machines import keep_machine  # noqa: E402
 from evidence.benchmarks.page import write_page  # noqa: E402
 from evidence.benchmarks.pairs import Clock, cpu_seconds  # noqa: E402
 from evidence.benchmarks.peak import PeakRate  # noqa: E402
@@ -75,6 +78,9 @@ def main():
     )
     rows = benchmark_rows(pairs) + cores_rows(points, pairs[0].case if pairs else "")
     write_csv(out / "benchmark.csv", COLUMNS, rows)
+    peak = _peak()
+    if not options.quick:
+        keep_machine(rows, get_host_cpu_name(), peak)
     write_csv(out / "growth.csv", GROWTH_COLUMNS, growth_rows(points))
     write_csv(out / "peers.csv", PEER_COLUMNS, peers)
     write_csv(
@@ -82,7 +88,7 @@ def main():
         MACHINE_COLUMNS,
         [
             {"what": what, "value": value}
-            for what, value in {**_machine(), **_absences(absent)}.items()
+            for what, value in {**description(CORES, *peak), **_absences(absent)}.items()
         ],
     )
     for row in rows:
@@ -171,11 +177,11 @@ def _teller():
     return lambda sentence: print(f"[{time.perf_counter() - start:6.1f} s] {sentence}", flush=True)
 
 
-def _machine():
-    """Return the description of the machine, with its FMA peak."""
+def _peak():
+    """Return (GFLOP/s, bits of a vector) of the FMA peak of one core."""
     peak = PeakRate()
     rate = max(peak.flops / cpu_seconds(peak.run) for _ in range(PEAK_REPEATS))
-    return description(CORES, 1.0e-9 * rate, peak.vector_bits)
+    return 1.0e-9 * rate, peak.vector_bits
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ run.
 import numpy as np
 
 from evidence.benchmarks.check import CHECK_S, FIRST_IMPACTS_S, NAMES
+from evidence.benchmarks.machines import machine_list
 from evidence.benchmarks.pairs import BATCH, ONE_RUN, PEAK
 from evidence.benchmarks.problem import BAND_HZ, GAP_M, LOAD_N, RATE, SMALL_BASIS
 from evidence.benchmarks.table import NANOSECONDS, SECONDS, three_digits, typed
@@ -13,8 +14,8 @@ SMALL_TO_HZ = SMALL_BASIS["basis.free_modes_to_Hz"]
 
 INTRODUCTION = f"""# Performance
 
-Written by `make benchmark`; do not edit. All numbers, with smallest and largest, are in
-`results/benchmark/`: `benchmark.csv`, `growth.csv`, `peers.csv`, `machine.csv`.
+Written by `make benchmark`; do not edit. All numbers are in
+`results/benchmark/`.
 
 The problem is the stand-in tube under a force in {BAND_HZ[0]:g} to {BAND_HZ[1]:g} Hz at 45 \
 degrees of the bend, with two
@@ -31,9 +32,9 @@ modes alone.
 - **Times** are CPU time of one core without compilation. Ours include set-up, output filter,
   statistics, energies and records; the peers keep three displacements.
 - **Ratios** are medians of runs that alternate in one process. Slow peers run a short stretch
-  with less contact, which favours them.
-- **Batches.** Eight runs share a 512-bit vector; the vectors of one run lie along its modes. The
-  plain loop, and JAX without its batch, take one run at a time.
+  with less contact.
+- **Batches.** Eight runs share a vector of 512 bits or two of 256; those of one run lie along its
+  modes.
 - **Step.** Ours, the plain loop, JAX and Exudyn use Newmark at {RATE} steps per second; the study
   uses [another step](#choice-of-the-step).
 """
@@ -43,6 +44,9 @@ COMPARED = (ONE_RUN, BATCH.format(8))
 
 OWN_CELL = """CPU s per simulated s; nanoseconds per step of Newmark; share of the peak rate of
 fused multiply-adds that the arithmetic of the step takes.
+"""
+MACHINES_CELL = """Plain loop over ours, one run; batch of eight; the batch's share of the peak; ns
+per step and run.
 """
 PEERS_CELL = "CPU time of a peer over ours: of one run; of a batch of eight.\n"
 
@@ -73,6 +77,7 @@ def write_page(path, rows, growth, peers, absent, machine, figure, work_precisio
     ]
     parts += ["## Ours\n", OWN_CELL, _own_times(rows)]
     parts += ["## The peers\n", PEERS_CELL, _ratios(rows)]
+    parts += ["## Machines\n", MACHINES_CELL, machine_list()]
     parts += ["## Growth\n", BATCH_OF_8, _growth(growth), _cores(rows)] if growth else []
     parts += [work_precision] if work_precision else []
     parts += ["## Models and agreement of the peers\n", *_agreement(peers)]

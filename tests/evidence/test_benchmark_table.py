@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from evidence.benchmarks.check import agreement
+from evidence.benchmarks.machines import PLAIN, keep_machine
 from evidence.benchmarks.newmark import newmark_map
 from evidence.benchmarks.ours import (
     contact_fraction,
@@ -18,7 +19,7 @@ from evidence.benchmarks.ours import (
     schedule_of,
 )
 from evidence.benchmarks.page import write_page
-from evidence.benchmarks.pairs import ONE_RUN, PEAK, Pair
+from evidence.benchmarks.pairs import BATCH, ONE_RUN, PEAK, Pair
 from evidence.benchmarks.peak import PeakRate, flops_per_step
 from evidence.benchmarks.peers import plain, scipy_ivp
 from evidence.benchmarks.problem import FREE_MODES, RATE, tube_problem
@@ -46,6 +47,22 @@ def pairs():
         Pair("a tube", ONE_RUN, "slow", True, False, [2.0, 4.0], [20.0, 20.0]),
         Pair("a tube", ONE_RUN, PEAK, True, True, [2.0, 2.0], [1.0, 1.0]),
     ]
+
+
+def test_a_machine_replaces_its_own_rows_only(tmp_path, monkeypatch):
+    monkeypatch.setattr("evidence.benchmarks.machines.FILE", tmp_path / "machines.csv")
+    eight = BATCH.format(8)
+    measured = [
+        Pair("a tube", ONE_RUN, PLAIN, True, False, [2.0], [4.0]),
+        Pair("a tube", eight, PLAIN, True, False, [1.0], [6.0]),
+        Pair("a tube", eight, PEAK, True, True, [1.0], [0.2]),
+    ]
+    slower = [*measured[:1], replace(measured[1], theirs=[5.0]), *measured[2:]]
+    for target, pairs_there in (("one", slower), ("other", slower), ("one", measured)):
+        keep_machine(benchmark_rows(pairs_there), target, (48.0, 256))
+    found = read_csv(tmp_path / "machines.csv")
+    assert [(row["target"], row["batch_of_8"]) for row in found] == [("one", "6"), ("other", "5")]
+    assert {(row["one_run"], row["peak_share"]) for row in found} == {("2", "0.2")}
 
 
 def test_the_table_has_its_columns_and_ratios_of_neighbours(tmp_path):
