@@ -1,5 +1,6 @@
 """A run alone, whose vectors lie along modes and rows: the bits that it has in a batch."""
 
+import importlib
 from dataclasses import replace
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 from tests.flow.test_fluid_rows import acting
 from vibroimpact.excitation.random_force import band_limited_noise
+from vibroimpact.integration import kernels
 from vibroimpact.integration.batch import Schedule, integrate_batch
 from vibroimpact.integration.entry_points import entry_points, lanes_of
 from vibroimpact.integration.kernels.lanes import LANES
@@ -64,3 +66,9 @@ def test_a_run_alone_has_kernels_of_its_own():
     assert [lanes_of(cases) for cases in (1, 2, LANES)] == [1, LANES, LANES]
     assert entry_points(1).march is not entry_points(LANES).march
     assert entry_points(1) is entry_points(1)
+
+
+def test_all_copies_of_the_kernels_say_a_sentence_once():
+    entry_points(1)
+    copy = importlib.import_module(f"{kernels.__name__}_of_1.compiled")
+    assert copy.SAID is kernels.compiled.SAID

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from . import kernels
-from .kernels import decimation, march
+from .kernels import compiled, decimation, march
 from .kernels.lanes import LANES
 
 HALF = LANES // 2
@@ -51,6 +51,7 @@ def entry_points(lanes: int) -> EntryPoints:
         return EntryPoints(march.march, march.initial_forces, decimation.decimate)
     name = f"{kernels.__name__}_of_{lanes}"
     _import_again(kernels, name)
+    vars(importlib.import_module(f"{name}.compiled")).update(SAID=compiled.SAID)
     own = [importlib.import_module(f"{name}.{module}") for module in ("march", "decimation")]
     return EntryPoints(own[0].march, own[0].initial_forces, own[1].decimate)
 

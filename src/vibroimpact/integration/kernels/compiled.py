@@ -46,7 +46,7 @@ NO_CACHE = (
 COMPILING = (
     "vibroimpact: the kernels are compiled, once for this machine: 15 s, or a minute on a slow one"
 )
-_said: set[str] = set()
+SAID: set[str] = set()  # sentences, by all copies of this module
 
 
 def source_digest(folder: Path = SOURCES) -> str:
@@ -83,8 +83,8 @@ def entry_point(function: Function) -> Function:
 
 
 def _say_once(sentence: str, reason: str = "") -> None:
-    if sentence not in _said:
-        _said.add(sentence)
+    if sentence not in SAID:
+        SAID.add(sentence)
         # to the terminal, even if the output of a job goes to its log
         print(sentence.format(reason=reason), file=sys.__stderr__ or sys.stderr, flush=True)
 
