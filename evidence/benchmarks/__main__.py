@@ -8,6 +8,8 @@ python -m evidence.benchmarks --page
     page and figure anew from the tables of the last run
 python -m evidence.benchmarks --peers plain --no-growth --quick
     our kernel beside the plain numba loop, in seconds
+
+Without --quick it puts this machine's rows into evidence/benchmarks/machines.csv.
 """
 
 import argparse

@@ -59,7 +59,7 @@ def machine_list():
         share, ns = 100.0 * float(row["peak_share"]), float(row["ns_per_step"])
         machine = row["target"], row["vector_bits"], three_digits(float(row["GFLOPs"]))
         cases.setdefault(machine, []).append(
-            f"{row['case']}: {'; '.join(ratios)}; {share:.2g} %; {ns:.0f}"
+            f"{row['case'].partition(',')[0]}: {'; '.join(ratios)}; {share:.2g} %; {ns:.0f}"
         )
     return "".join(
         f"- `{target}`, {bits} bits, {rate} GFLOP/s. {'. '.join(own)}.\n"

@@ -14,8 +14,7 @@ SMALL_TO_HZ = SMALL_BASIS["basis.free_modes_to_Hz"]
 
 INTRODUCTION = f"""# Performance
 
-Written by `make benchmark`; do not edit. All numbers are in
-`results/benchmark/`.
+Written by `make benchmark`, from `results/benchmark/`; do not edit.
 
 The problem is the stand-in tube under a force in {BAND_HZ[0]:g} to {BAND_HZ[1]:g} Hz at 45 \
 degrees of the bend, with two
@@ -45,8 +44,8 @@ COMPARED = (ONE_RUN, BATCH.format(8))
 OWN_CELL = """CPU s per simulated s; nanoseconds per step of Newmark; share of the peak rate of
 fused multiply-adds that the arithmetic of the step takes.
 """
-MACHINES_CELL = """Plain loop over ours, one run; batch of eight; the batch's share of the peak; ns
-per step and run.
+MACHINES_CELL = """By each machine's last benchmark: plain loop over ours, one run; batch of eight;
+the batch's share of the peak; ns per step and run, at 20 N.
 """
 PEERS_CELL = "CPU time of a peer over ours: of one run; of a batch of eight.\n"
 

@@ -19,7 +19,7 @@ TESTS = {
     "T6": "stationarity",
 }
 
-# Units of the bounds of a parameter; linear_stage.scales computes the sizes.
+# Units of the bounds of a parameter; diagnosis.sizes computes the sizes.
 SCALES = {
     "one": "1",
     "gap": "the largest nominal clearance",

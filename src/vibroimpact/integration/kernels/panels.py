@@ -86,7 +86,7 @@ def _mode_factors(context, builder, array_type, coefficients, j):
 
 
 def _factors(context, builder, array_type, coefficients, j):
-    """Coefficients j to j + PANEL - 1 in the vectors of a tile, each in every lane."""
+    """Coefficients j to j + TILE - 1 in the vectors of a tile, each in every lane."""
     if SPAN == 1:
         return _mode_factors(context, builder, array_type, coefficients, j)
     return [load_value(context, builder, array_type, coefficients, j, WIDE)]
