@@ -1,5 +1,7 @@
 """What of a campaign is compared with a model."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -110,3 +112,10 @@ def test_records_sampled_too_slowly_for_the_modes_are_told(comparison, share, le
     rows = sampling_rows(model, xr.Dataset(attrs={"sampling_frequency": rate}))
     assert [row["level"] for row in rows] == levels
     assert all("Sample at" in row["message"] for row in rows)
+
+
+def test_a_model_without_an_elastic_mode_is_refused(comparison):
+    model = comparison.structure.with_terms(())
+    free = replace(model, omega=np.zeros(model.modes))
+    [row] = sampling_rows(free, xr.Dataset(attrs={"sampling_frequency": 1000.0}))
+    assert row["level"] == "refuse" and "hold it" in row["message"]

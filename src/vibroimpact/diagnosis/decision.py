@@ -87,7 +87,7 @@ def decide(
     best = hypotheses[0].worth if hypotheses else 0.0
     rest = level - floor if np.isfinite(floor) else 0.0
     unexplained = float(expit((rest - constants.REST) / constants.REST_WIDTH))
-    sure = max(map(sure_gain, hypotheses), default=0.0)
+    sure = max((each.sure_gain for each in hypotheses), default=0.0)
     no_effect = float(expit(constants.NULL_WIDTHS * (1.0 - sure / constants.NULL_GAIN)))
     nothing = no_effect * (1.0 - unexplained)
     share = max(best, 0.0) / max(best + max(rest, 0.0), 1.0e-12)
@@ -116,7 +116,7 @@ def _odds(hypotheses: Sequence[Hypothesis], width: float) -> list[float]:
 
 def gains(search: Search) -> bool:
     """Return whether some hypothesis of a Search gains more than nothing does."""
-    return max(map(sure_gain, search.hypotheses), default=0.0) > constants.NULL_GAIN
+    return any(each.sure_gain > constants.NULL_GAIN for each in search.hypotheses)
 
 
 def far_off(misfit: Mapping[str, float | None]) -> bool:
@@ -219,14 +219,6 @@ def refuted(decision: Decision, in_favour_of_nothing: bool = False) -> Decision:
     if in_favour_of_nothing and decision.something_else < 0.5:
         return replace(left, verdict="none", nothing=decision.nothing + chance)
     return replace(left, verdict="unknown", something_else=decision.something_else + chance)
-
-
-def sure_gain(hypothesis: Hypothesis) -> float:
-    """Return the least gain of a hypothesis: by two standard errors, or by what a wrong effect
-    reaches, if that is less.
-    """
-    error = min(2.0 * hypothesis.error, constants.NULL_GAIN)
-    return min(hypothesis.apart - error, hypothesis.gain)
 
 
 def _superfluous(

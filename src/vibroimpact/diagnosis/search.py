@@ -85,6 +85,13 @@ class Hypothesis:
         """
         return min(self.apart, self.gain)
 
+    @property
+    def sure_gain(self) -> float:
+        """Return the least gain over nothing: by two standard errors, or by what a wrong effect
+        reaches, if that is less.
+        """
+        return min(self.apart - min(2.0 * self.error, NULL_GAIN), self.gain)
+
     def sure_gain_over(self, other: Hypothesis) -> float:
         """Return the gain over another one, less the standard error of their difference apart: of
         two that fit as well, the errors are much alike.
@@ -193,8 +200,8 @@ def _forward(
         best = max(new, key=lambda each: each.gain)
         for each in sorted(new, key=lambda each: -each.gain):
             log(f"{each.point.name}: {each.gain:.3f}, apart {each.apart:.3f} ± {each.error:.3f}")
-        if best.sure_gain_over(base) < needed_gain(base.worth):
-            break
+        if best.sure_gain_over(base) < needed_gain(base.worth) or best.sure_gain <= NULL_GAIN:
+            break  # what nothing reaches too is no ground for one more
         if len(best.point.terms) > 1:
             others = _without_first(at, best, nothing, screened[nothing.point.name], log)
             found |= {each.point.name: each for each in others}

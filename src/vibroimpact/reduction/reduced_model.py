@@ -49,13 +49,33 @@ ZERO_SQUARE = 1.0e-14  # of the largest squared frequency; below it a mode is ri
 
 @dataclass(frozen=True, eq=False)
 class Basis:
-    """The basis of a reduction: omega (mode,) rad/s, shapes (dof, mode), and, of a tube, the
-    arc lengths of its nodes (node,) in m.
-    """
+    """The basis of a reduction: omega (mode,) rad/s and shapes (dof, mode) of a structure."""
 
+    structure: Any
     omega: np.ndarray
     shapes: np.ndarray
-    nodes: np.ndarray | None = None
+
+    @property
+    def nodes(self) -> np.ndarray | None:
+        """Return the arc lengths (node,) in m of the nodes of a tube, None of another structure."""
+        return getattr(self.structure, "node_arc_length", None)
+
+    def shapes_of(self, variant: Any) -> np.ndarray | None:
+        """Return shapes (dof, vector) that span the motion of a variant on the same mesh, None if
+        they may not. If clamps of its ends give way, the static shapes of forces there are added
+        (R. R. Craig and M. C. C. Bampton, AIAA Journal 6 (1968) 1313-1319).
+        """
+        own = self.structure
+        if self.nodes is None or np.array_equal(own.end_springs, variant.end_springs):
+            return self.shapes if len(self.shapes) == variant.dofs else None
+        place = (variant.transformation.T @ own.transformation).tocsr()  # (dof, dof of the basis)
+        freed = np.flatnonzero(np.diff(place.indptr) == 0)
+        sprung = np.flatnonzero(variant.end_springs)
+        if own.dofs + len(freed) != variant.dofs or not np.array_equal(freed, sprung):
+            return None
+        force = sparse.eye_array(variant.dofs, format="csc")[:, freed].toarray()
+        static = sparse.linalg.splu(variant.stiffness.tocsc()).solve(force)
+        return np.hstack([place @ self.shapes, static / np.abs(static).max(axis=0)])
 
 
 def build_model(
@@ -72,19 +92,20 @@ def build_model(
     gauges: (named point, outward normal (3,)) of strain gauges on a tube. Each is one more sensor
         behind those of record.sensors, its shape a strain per unit amplitude.
     basis: of another configuration, see reduced_basis: the structure is built on its mesh and
-        reduced on it; a new basis is made if None, or if the degrees of freedom differ. A variant
-        that differs in point masses, local elements or stops at a point needs no mesh and no basis
-        of its own.
+        reduced on it; a new basis is made if None, or if it does not span the motion. A variant
+        that differs in point masses, local elements, stops at a point or springs at the ends needs
+        no mesh and no basis of its own.
 
     Raises ValueError when a support or a named point is more than 5 mm off the tube, a name is
     unknown, no mode is left, round-off hides a stiffness (see _refuse_false_rigid_modes), a preload
     has no static equilibrium, or the initial state is not representable (see initial_state).
     """
-    tube = config.structure.kind in TUBES
     structure, local_rows = full_structure(config, nodes=None if basis is None else basis.nodes)
     point_rows = point_rows_of(structure, config)
-    if basis is not None and len(basis.shapes) == structure.dofs:
-        omega, shapes = _modes_in(structure, local_rows, basis.shapes)
+    tube = config.structure.kind in TUBES
+    known = None if basis is None else basis.shapes_of(structure)
+    if known is not None:
+        omega, shapes = _modes_in(structure, local_rows, known)
         full_frequencies = omega / (2.0 * np.pi)
     else:
         omega, shapes, full_frequencies = _modes(structure, local_rows, config)
@@ -148,7 +169,7 @@ def reduced_basis(config: ConfigPart) -> Basis:
     """Return the Basis of a configuration before any correction."""
     structure, local_rows = full_structure(config)
     omega, shapes, _ = _modes(structure, local_rows, config)
-    return Basis(omega, shapes, getattr(structure, "node_arc_length", None))
+    return Basis(structure, omega, shapes)
 
 
 def _refuse_false_rigid_modes(

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 
 import numpy as np
 from scipy import sparse
@@ -22,7 +21,8 @@ from vibroimpact.structure.contact.supports import ContactPoints, place_contact_
 from .beam_elements import DOF_PER_NODE, Beam, element_matrices, interpolation, section_beam
 from .fluid import FluidStretch, beams_in_fluid, fluid_stretches, transverse_only
 
-STRUCTURES = Memo()
+STRUCTURES, UNHELD = Memo(), Memo()
+ENDS = ("root", "start", "end")
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +38,7 @@ class TubeStructure:
     mass, stiffness: (dof, dof) sparse, SI.
     transformation: (node dof, dof) sparse. Node displacements (ux, uy, uz, rx, ry, rz per node,
         global axes) are transformation @ dofs.
+    end_springs: (dof,) N/m and N m/rad, the springs of the ends, which are in the stiffness.
     inertia: (3, dof) kg, minus the force on the dofs per unit acceleration of both ends along x, y,
         z, in fluid that stays in space.
     carried_inertia: (3, dof) kg, the loss of `inertia` if the fluid outside moves with the ends:
@@ -58,6 +59,7 @@ class TubeStructure:
     mass: sparse.csr_array
     stiffness: sparse.csr_array
     transformation: sparse.csr_array
+    end_springs: np.ndarray
     inertia: np.ndarray
     carried_inertia: np.ndarray
     viscous: sparse.csr_array
@@ -211,11 +213,56 @@ def _mesh(config: ConfigPart, line: Centreline, contact: ContactPoints, halved: 
     return halved_mesh(node_arc_length) if halved else node_arc_length
 
 
+@dataclass(frozen=True, eq=False)
+class _Unheld:
+    """The tube before its ends are held: see TubeStructure, with matrices (node dof, node dof)."""
+
+    beam: Beam
+    nodes: np.ndarray
+    axes: np.ndarray
+    first_axis: np.ndarray | None
+    mass: sparse.csr_array
+    stiffness: sparse.csr_array
+    carried: sparse.csr_array
+    viscous: sparse.csr_array
+    two_phase: sparse.csr_array
+
+
 def _built(
     config: ConfigPart, line: Centreline, contact: ContactPoints, node_arc_length: np.ndarray
 ) -> TubeStructure:
     """Return the TubeStructure on a mesh of nodes (node,) at arc lengths in m."""
     structure = config.structure
+    parts = {name: value for name, value in vars(structure).items() if name not in ENDS}
+    key = (repr(parts), node_arc_length.tobytes())
+    tube = UNHELD.get(key, lambda: _unheld(structure, line, node_arc_length))
+    transformation, springs = _end_conditions(structure, line, len(tube.nodes))
+    rigid = np.tile(np.eye(3, DOF_PER_NODE), len(tube.nodes))
+
+    def held(matrix: sparse.csr_array) -> sparse.csr_array:
+        return (transformation.T @ matrix @ transformation).tocsr()
+
+    return TubeStructure(
+        centreline=line,
+        beam=tube.beam,
+        contact=contact,
+        node_arc_length=node_arc_length,
+        nodes=tube.nodes,
+        axes=tube.axes,
+        first_axis=tube.first_axis,
+        transformation=transformation,
+        end_springs=springs @ transformation,
+        inertia=(rigid @ tube.mass) @ transformation,
+        carried_inertia=(rigid @ tube.carried) @ transformation,
+        mass=held(tube.mass),
+        stiffness=held(tube.stiffness + sparse.diags_array(springs, format="csr")),
+        viscous=held(tube.viscous),
+        two_phase=held(tube.two_phase),
+    )
+
+
+def _unheld(structure: ConfigPart, line: Centreline, node_arc_length: np.ndarray) -> _Unheld:
+    """Return the tube on a mesh of nodes (node,) at arc lengths in m, before its ends are held."""
     stretches = fluid_stretches(structure, line)
     nodes = np.array([line.position(place) for place in node_arc_length])
     middles = 0.5 * (node_arc_length[1:] + node_arc_length[:-1])
@@ -223,34 +270,10 @@ def _built(
     first_axis = _first_axis(structure.section, line)
     lengths, axes = _element_frames(line, nodes, middles, first_axis)
     beams = beams_in_fluid(beam, stretches, middles)
-    frames = zip(beams, map(float, lengths), map(np.ndarray.tobytes, axes), strict=True)
-    elements = [_element_matrices(*frame) for frame in frames]
+    elements = [element_matrices(*each) for each in zip(beams, lengths, axes, strict=True)]
     stiffness, mass = (_assembled(matrices) for matrices in zip(*elements, strict=True))
-    transformation, springs = _end_conditions(structure, line, len(nodes))
-    rigid = np.tile(np.eye(3, DOF_PER_NODE), len(nodes))
-    carried, viscous, two_phase = _fluid_matrices(beam, stretches, middles, (lengths, axes))
-    return TubeStructure(
-        centreline=line,
-        beam=beam,
-        contact=contact,
-        node_arc_length=node_arc_length,
-        nodes=nodes,
-        axes=axes,
-        first_axis=first_axis,
-        transformation=transformation,
-        inertia=(rigid @ mass) @ transformation,
-        carried_inertia=(rigid @ carried) @ transformation,
-        mass=(transformation.T @ mass @ transformation).tocsr(),
-        stiffness=(transformation.T @ (stiffness + springs) @ transformation).tocsr(),
-        viscous=(transformation.T @ viscous @ transformation).tocsr(),
-        two_phase=(transformation.T @ two_phase @ transformation).tocsr(),
-    )
-
-
-@lru_cache(maxsize=1024)
-def _element_matrices(beam: Beam, length: float, axes: bytes) -> tuple[np.ndarray, np.ndarray]:
-    """Return element_matrices, kept: structures that differ at their ends share their elements."""
-    return element_matrices(beam, length, np.frombuffer(axes).reshape(3, 3))
+    fluid = _fluid_matrices(beam, stretches, middles, (lengths, axes))
+    return _Unheld(beam, nodes, axes, first_axis, mass, stiffness, *fluid)
 
 
 def _first_axis(section: ConfigPart, line: Centreline) -> np.ndarray | None:
@@ -321,8 +344,8 @@ def _assembled(matrices: Sequence[np.ndarray]) -> sparse.csr_array:
 
 def _end_conditions(
     structure: ConfigPart, line: Centreline, node_count: int
-) -> tuple[sparse.csr_array, sparse.csr_array]:
-    """Return (transformation (node dof, dof), springs (node dof, node dof)) of the two ends.
+) -> tuple[sparse.csr_array, np.ndarray]:
+    """Return (transformation (node dof, dof), springs (node dof,)) of the two ends.
 
     structure.root serves both ends of a u_tube; a path has structure.start and structure.end. Kinds
     of ends: clamped; pinned (translations and torsion fixed); springs (translation_N_per_m and
@@ -335,19 +358,20 @@ def _end_conditions(
     places = ((0, line.direction(0.0)), (node_count - 1, line.direction(line.length)))
     size = DOF_PER_NODE * node_count
     springs = np.zeros(size)
-    blocks = [sparse.eye_array(DOF_PER_NODE, format="csr") for _ in range(node_count)]
+    blocks = []
     for end, (node, tangent) in zip(ends, places, strict=True):
-        blocks[node] = sparse.csr_array(_free_directions(end.kind, tangent))
+        blocks.append(sparse.csr_array(_free_directions(end.kind, tangent)))
         if end.kind == "springs":
             first = DOF_PER_NODE * node
             springs[first : first + 3] = end.translation_N_per_m
             springs[first + 3 : first + 6] = end.rotation_N_m_per_rad
-    transformation = sparse.block_diag(blocks, format="csr")
+    between = sparse.eye_array(size - 2 * DOF_PER_NODE, format="csr")
+    transformation = sparse.block_diag([blocks[0], between, blocks[1]], format="csr")
     if transformation.shape[1] == 0:
         raise ValueError(
             "both ends are clamped and nothing is between them: use at least two elements"
         )
-    return transformation, sparse.diags_array(springs, format="csr")
+    return transformation, springs
 
 
 def _free_directions(kind: str, tangent: np.ndarray) -> np.ndarray:

@@ -25,6 +25,10 @@ SWAP_RATIO = 0.6
 SWAP_DB = 1.0
 OPPOSITE = -0.4  # mean cosine of the phase between measured and simulated
 UNIT_FACTOR_DB = 6.0  # sensor gains are within a few per cent; a factor of two is a wrong unit
+# A factor of a unit is the same in all bands: it is this many times their spread at least. What the
+# model lacks changes some bands more than others, most where the model hardly moves.
+OVER_SPREAD = 5.0
+LIKE_MODEL_DB = 6.0  # largest misfit of a channel whose polarity is judged
 UNIT_FACTORS = {
     9.80665: "g and m s-2",
     1e3: "mm and m (or kN and N)",
@@ -118,7 +122,9 @@ def compare_with_model(
         rows += _swap_rows(pair, record, misfit[first, second], misfit[first, first])
     for index, channel in enumerate(channels):
         place = exchanged.get(index, index)
-        if mean_cosine(h1[index], model[place], weights[index]) < OPPOSITE:
+        spread = misfit[index, place]
+        opposite = mean_cosine(h1[index], model[place], weights[index]) < OPPOSITE
+        if opposite and spread < LIKE_MODEL_DB:
             rows.append(
                 warning(
                     "swapped channels",
@@ -129,8 +135,7 @@ def compare_with_model(
                 )
             )
         gain = float(offset[index, place])
-        # of bands that differ by more than their offset, none is all of one unit
-        if abs(gain) > max(UNIT_FACTOR_DB, misfit[index, place]):
+        if abs(gain) > max(UNIT_FACTOR_DB, OVER_SPREAD * spread):
             rows.append(
                 warning(
                     "units",

@@ -136,9 +136,15 @@ def model_rows(config: ConfigPart, campaign: xr.Dataset) -> list[dict]:
 
 
 def sampling_rows(model: ModalModel, campaign: xr.Dataset) -> list[dict]:
-    """Return a row of checks if the records show the first mode of a model alone, or none."""
+    """Return a row of checks if the records show the first mode of a model alone, or none, or if
+    the model has none.
+    """
+    elastic = model.frequencies[model.omega > 0.0]
+    if not elastic.size:
+        sentence = "The model has no mode but rigid-body motion: hold it by a spring or an end."
+        return [check_row("model", "refuse", sentence)]
     rate = float(campaign.attrs["sampling_frequency"])
-    top, first = 0.5 * PASS_FRACTION * rate, float(model.frequencies[model.omega > 0.0].min())
+    top, first = 0.5 * PASS_FRACTION * rate, float(elastic.min())
     if top > SHOWN * first:
         return []
     sentence = (
