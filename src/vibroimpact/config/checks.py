@@ -1,7 +1,8 @@
 """The checks between keys of a configuration: geometry, sampling, names, bands.
 
-A check is a generator of Problems whose argument names are the top-level sections it reads. It runs
-when those sections are valid by themselves, so that a mistake elsewhere does not hide the others.
+A check is a generator of Problems whose argument names are the top-level sections it reads, or
+parts of them, see _parts. It runs when those sections are valid by themselves, so that a mistake
+elsewhere does not hide the others, and if there are such parts.
 """
 
 from __future__ import annotations
@@ -10,8 +11,7 @@ import inspect
 import math
 import os
 from collections import Counter
-from collections.abc import Callable, Mapping
-from functools import cache
+from collections.abc import Mapping
 from typing import Any
 
 from . import (
@@ -23,10 +23,9 @@ from . import (
     turbulence_checks,
 )
 from . import name_checks as names
-from .excitation import Excitation, highest_frequency
+from .excitation import highest_frequency
 from .key_problem import Problem, Problems, value_at
-from .schema import Basis, Grid, Identification, Integration, Overlay, RecordKeys, Spectra
-from .structure import Structure
+from .stage_settings import ConfigPart
 
 STEPS_PER_EXCITED_PERIOD = 20
 # kernels.RATIO, output_filter.LEAST_STAGES and PASS_FRACTION, which only the integration may import
@@ -45,30 +44,41 @@ def cross_problems(sections: Mapping[str, Any]) -> list[Problem]:
 
     sections: {name: section} of those that are valid by themselves.
     """
+    given = {name: section for name, section in sections.items() if section is not None}
+    given |= _parts(given)
     problems: list[Problem] = []
     for check in CHECKS:
-        wanted = _sections(check)
-        if all(sections.get(name) is not None for name in wanted) and _concerns(check, sections):
-            problems += check(*(sections[name] for name in wanted))
+        wanted = inspect.signature(check).parameters
+        if given.keys() >= wanted.keys():
+            problems += check(*(given[name] for name in wanted))
     return [
         each if each.value is not None else each._replace(value=value_at(sections, each.place))
         for each in problems
     ]
 
 
-@cache
-def _sections(check: Callable[..., Problems]) -> tuple[str, ...]:
-    """Return the names of the sections that a check reads."""
-    return tuple(inspect.signature(check).parameters)
+def _parts(sections: Mapping[str, Any]) -> dict[str, Any]:
+    """Return {name: part} of the parts of sections that checks read.
+
+    tube: the structure if it is a tube. line: its centreline, if its bends have directions.
+    other: the structure if it is none. names: of the points that the structure has.
+    turbulence: the excitation if it is that.
+    """
+    structure, force = sections.get("structure"), sections.get("excitation")
+    parts: dict[str, Any] = {}
+    if force is not None and force.kind == "turbulence":
+        parts["turbulence"] = force
+    if structure is None:
+        return parts
+    if "points" in sections:
+        parts["names"] = names.names_of_points(structure, sections["points"])
+    if structure.kind not in names.TUBES:
+        return parts | {"other": structure}
+    line = geometry_checks.centreline_of(structure)
+    return parts | {"tube": structure} | ({} if line is None else {"line": line})
 
 
-def _concerns(check: Callable[..., Problems], sections: Mapping[str, Any]) -> bool:
-    """Whether a check is about the kind of structure that there is."""
-    tube = getattr(sections.get("structure"), "kind", "path") in names.TUBES
-    return (tube or check not in TUBE_CHECKS) and not (tube and check in POINT_CHECKS)
-
-
-def _repeated_values(grid: Grid) -> Problems:
+def _repeated_values(grid: ConfigPart) -> Problems:
     values = {
         "gap_m": grid.gap_m,
         "load_rms_N": grid.load_rms_N if isinstance(grid.load_rms_N, tuple) else (),
@@ -95,7 +105,7 @@ def _repeated_values(grid: Grid) -> Problems:
         )
 
 
-def _number_of_cases(grid: Grid) -> Problems:
+def _number_of_cases(grid: ConfigPart) -> Problems:
     loads = grid.load_rms_N
     counts = (len(loads) if isinstance(loads, tuple) else loads.count, len(grid.gap_m), grid.seeds)
     if math.prod(counts) > MOST_CASES:
@@ -107,7 +117,7 @@ def _number_of_cases(grid: Grid) -> Problems:
         )
 
 
-def _every_step(record: RecordKeys, integration: Integration) -> Problems:
+def _every_step(record: ConfigPart, integration: ConfigPart) -> Problems:
     steps = record.duration_s * integration.steps_per_second
     if record.every_step and steps > MOST_STEPS_KEPT:
         yield Problem(
@@ -122,7 +132,7 @@ def _every_step(record: RecordKeys, integration: Integration) -> Problems:
         )
 
 
-def _force(excitation: Excitation) -> Problems:
+def _force(excitation: ConfigPart) -> Problems:
     for index, load in enumerate(getattr(excitation, "distributed", ())):
         if load.from_m == load.to_m:
             yield Problem(
@@ -136,7 +146,7 @@ def _force(excitation: Excitation) -> Problems:
         )
 
 
-def _overlay(overlay: Overlay, grid: Grid) -> Problems:
+def _overlay(overlay: ConfigPart, grid: ConfigPart) -> Problems:
     if overlay.campaign is not None and not os.path.isfile(overlay.campaign):
         yield Problem(
             "overlay.campaign",
@@ -149,7 +159,7 @@ def _overlay(overlay: Overlay, grid: Grid) -> Problems:
         )
 
 
-def _bands(identification: Identification) -> dict[str, tuple[float, ...]]:
+def _bands(identification: ConfigPart) -> dict[str, tuple[float, ...]]:
     """Return {key: (low, high) in Hz} of the bands of the methods."""
     return {
         "peak_search_Hz": identification.peak_search_Hz,
@@ -158,7 +168,7 @@ def _bands(identification: Identification) -> dict[str, tuple[float, ...]]:
     }
 
 
-def _bands_pass_the_filter(record: RecordKeys, identification: Identification) -> Problems:
+def _bands_pass_the_filter(record: ConfigPart, identification: ConfigPart) -> Problems:
     passed = FILTER_PASSES * record.sampling_frequency_Hz / 2
     for key, (_, high) in _bands(identification).items():
         if high > passed:
@@ -169,7 +179,7 @@ def _bands_pass_the_filter(record: RecordKeys, identification: Identification) -
             )
 
 
-def _bands_are_excited(excitation: Excitation, identification: Identification) -> Problems:
+def _bands_are_excited(excitation: ConfigPart, identification: ConfigPart) -> Problems:
     if excitation.kind not in ("band_limited", "turbulence"):
         return
     low, high = excitation.band_Hz
@@ -189,7 +199,7 @@ def _bands_are_excited(excitation: Excitation, identification: Identification) -
             )
 
 
-def _segments(record: RecordKeys, spectra: Spectra, identification: Identification) -> Problems:
+def _segments(record: ConfigPart, spectra: ConfigPart, identification: ConfigPart) -> Problems:
     if spectra.segment_s > record.duration_s:
         yield Problem(
             "spectra.segment_s",
@@ -204,7 +214,7 @@ def _segments(record: RecordKeys, spectra: Spectra, identification: Identificati
         )
 
 
-def _bands_resolved(spectra: Spectra, identification: Identification) -> Problems:
+def _bands_resolved(spectra: ConfigPart, identification: ConfigPart) -> Problems:
     for key, (low, high) in _bands(identification).items():
         lines = (high - low) * spectra.segment_s
         if lines < 8:
@@ -215,7 +225,7 @@ def _bands_resolved(spectra: Spectra, identification: Identification) -> Problem
             )
 
 
-def _step_and_force(excitation: Excitation, integration: Integration) -> Problems:
+def _step_and_force(excitation: ConfigPart, integration: ConfigPart) -> Problems:
     highest = highest_frequency(excitation)
     needed = STEPS_PER_EXCITED_PERIOD * highest
     if integration.steps_per_second < needed:
@@ -226,7 +236,7 @@ def _step_and_force(excitation: Excitation, integration: Integration) -> Problem
         )
 
 
-def _step_and_modes(structure: Structure, basis: Basis, integration: Integration) -> Problems:
+def _step_and_modes(tube: ConfigPart, basis: ConfigPart, integration: ConfigPart) -> Problems:
     omega_step = 2 * math.pi * basis.free_modes_to_Hz / integration.steps_per_second
     largest = LARGEST_OMEGA_STEP[integration.scheme]
     if omega_step > largest:
@@ -239,7 +249,7 @@ def _step_and_modes(structure: Structure, basis: Basis, integration: Integration
         )
 
 
-def _step_and_samples(integration: Integration, record: RecordKeys) -> Problems:
+def _step_and_samples(integration: ConfigPart, record: ConfigPart) -> Problems:
     if record.every_step:
         return
     ratio = integration.steps_per_second / record.sampling_frequency_Hz
@@ -254,7 +264,7 @@ def _step_and_samples(integration: Integration, record: RecordKeys) -> Problems:
         )
 
 
-def _whole_samples(record: RecordKeys, integration: Integration) -> Problems:
+def _whole_samples(record: ConfigPart, integration: ConfigPart) -> Problems:
     if record.every_step:
         return
     for place, duration in (
@@ -276,7 +286,7 @@ def _whole_samples(record: RecordKeys, integration: Integration) -> Problems:
         )
 
 
-TUBE_CHECKS: tuple[Callable[..., Problems], ...] = (
+CHECKS = (
     section_checks.wall,
     section_checks.axes_of_the_section,
     section_checks.enclosed_area,
@@ -288,25 +298,17 @@ TUBE_CHECKS: tuple[Callable[..., Problems], ...] = (
     geometry_checks.gaps,
     geometry_checks.offsets_on_a_tube,
     names.sensors_of_a_tube,
-    turbulence_checks.stretches,
-    turbulence_checks.direction,
+    turbulence_checks.field,
     turbulence_checks.points_of_spectrum,
-    flow_checks.stretches,
-    flow_checks.direction,
+    flow_checks.field,
     flow_checks.pitch,
     flow_checks.covered,
     _step_and_modes,
-)
-POINT_CHECKS: tuple[Callable[..., Problems], ...] = (
     names.point_supports,
     names.same_stop_twice,
     names.places_of_points,
     turbulence_checks.needs_a_tube,
     flow_checks.acts_along_a_tube,
-)
-CHECKS: tuple[Callable[..., Problems], ...] = (
-    *TUBE_CHECKS,
-    *POINT_CHECKS,
     section_checks.wall_that_wears,
     section_checks.wear_needs_statistics,
     names.chain_names,
@@ -314,7 +316,8 @@ CHECKS: tuple[Callable[..., Problems], ...] = (
     geometry_checks.offsets,
     profile_checks.gaps_of_supports,
     profile_checks.preloads,
-    profile_checks.profile_normals,
+    profile_checks.normals_on_a_tube,
+    profile_checks.normals_at_points,
     names.names_twice,
     _repeated_values,
     _number_of_cases,
@@ -332,9 +335,7 @@ CHECKS: tuple[Callable[..., Problems], ...] = (
     names.sensors,
     names.driven_direction_is_recorded,
     turbulence_checks.band,
-    flow_checks.lags,
-    flow_checks.acting,
-    flow_checks.fitted_range,
+    flow_checks.coupling,
     flow_checks.following,
     _force,
     _overlay,

@@ -197,10 +197,10 @@ def _metadata(annotation: Any) -> list[Any]:
 def _range(annotation: Any) -> str:
     """Return the bounds of the numbers in a type, such as "> 0, ≤ 2"."""
     bounds = [
-        f"{sign} {_number(bound)}"
+        f"{kind.shown} {_number(bound)}"
         for each in _metadata(annotation)
         if isinstance(each, Range)
-        for sign, bound in each.bounds()
+        for kind, bound in each.bounds()
     ]
     return ", ".join(dict.fromkeys(bounds))
 

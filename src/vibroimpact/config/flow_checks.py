@@ -2,38 +2,29 @@
 
 from __future__ import annotations
 
-from typing import Any
-
+from vibroimpact.geometry.centreline import Centreline
 from vibroimpact.geometry.sections import outer_width
 
-from .excitation import Excitation
-from .flow import Flow
-from .geometry_checks import Tube
 from .key_problem import Problem, Problems
-from .structure import Structure
-from .turbulence_checks import direction_of_flow, points_of_spectrum, stretches_of_flow
+from .stage_settings import ConfigPart
+from .turbulence_checks import field_of_section, points_of_spectrum
 
 
-def acts_along_a_tube(structure: Structure, flow: Flow) -> Problems:
+def acts_along_a_tube(other: ConfigPart, flow: ConfigPart) -> Problems:
     """Yield a problem: a flow acts along a tube, and this structure is none."""
-    yield Problem(
-        "flow", f"acts along a tube, structure.kind is {structure.kind}: leave it out", "..."
-    )
+    yield Problem("flow", f"acts along a tube, structure.kind is {other.kind}: leave it out", "...")
 
 
-def stretches(structure: Tube, flow: Flow) -> Problems:
-    """Yield a problem unless the stretches of the flow are on the tube and do not overlap."""
-    yield from stretches_of_flow(structure, flow.stretches, "flow")
+def field(line: Centreline, flow: ConfigPart) -> Problems:
+    """Yield a problem unless the stretches of the flow are on the tube and do not overlap, and the
+    fluid-elastic force is across the tube wherever it acts.
+    """
+    yield from field_of_section(line, flow, "flow")
 
 
-def direction(structure: Tube, flow: Flow) -> Problems:
-    """Yield a problem unless the fluid-elastic force is across the tube wherever it acts."""
-    yield from direction_of_flow(structure, flow, "flow")
-
-
-def pitch(structure: Tube, flow: Flow) -> Problems:
+def pitch(tube: ConfigPart, flow: ConfigPart) -> Problems:
     """Yield a problem unless neighbouring tubes leave a gap."""
-    width = outer_width(structure.section)
+    width = outer_width(tube.section)
     if flow.criterion.kind == "tema" and flow.criterion.pitch_m <= width:
         yield Problem(
             "flow.criterion.pitch_m",
@@ -41,8 +32,10 @@ def pitch(structure: Tube, flow: Flow) -> Problems:
         )
 
 
-def lags(flow: Flow) -> Problems:
-    """Yield a problem unless each lag has an amplitude and a rate."""
+def coupling(flow: ConfigPart) -> Problems:
+    """Yield a problem unless each lag has an amplitude and a rate, a flow that acts has a force,
+    and the reduced velocities of a fit ascend.
+    """
     own = flow.coupling
     if own is not None and own.kind == "lags" and len(own.amplitudes) != len(own.rates):
         yield Problem(
@@ -50,25 +43,17 @@ def lags(flow: Flow) -> Problems:
             f"has {len(own.rates)} values, amplitudes has {len(own.amplitudes)}: give one of each"
             " per lag",
         )
-
-
-def acting(flow: Flow) -> Problems:
-    """Yield a problem unless a flow that acts has a force."""
-    if flow.acting_m_per_s is not None and flow.coupling is None:
+    if flow.acting_m_per_s is not None and own is None:
         yield Problem(
             "flow.acting_m_per_s",
             "acts through flow.coupling, and there is none: give one, or leave acting_m_per_s out",
         )
-
-
-def fitted_range(flow: Flow) -> Problems:
-    """Yield a problem unless the reduced velocities of a fit ascend."""
-    own = getattr(flow.coupling, "reduced_velocity", None)
-    if own is not None and own[0] >= own[1]:
+    fitted = getattr(own, "reduced_velocity", None)
+    if fitted is not None and fitted[0] >= fitted[1]:
         yield Problem("flow.coupling.reduced_velocity", "must ascend: give the lower one first")
 
 
-def following(excitation: Excitation, flow: Flow) -> Problems:
+def following(excitation: ConfigPart, flow: ConfigPart) -> Problems:
     """Yield a problem unless turbulence that follows the velocity has a dimensionless spectrum."""
     if flow.turbulence is None or flow.turbulence.kind != "dimensionless":
         return
@@ -80,15 +65,16 @@ def following(excitation: Excitation, flow: Flow) -> Problems:
         )
 
 
-def covered(structure: Tube, excitation: Excitation, flow: Flow) -> Problems:
+def covered(tube: ConfigPart, turbulence: ConfigPart, flow: ConfigPart) -> Problems:
     """Yield a problem unless a table of reduced frequencies covers the band at each velocity."""
-    spectrum: Any = getattr(excitation, "spectrum", None)
-    if flow.turbulence is None or getattr(spectrum, "kind", "") != "reduced_table":
+    spectrum = turbulence.spectrum
+    follows = flow.turbulence is not None and flow.turbulence.kind == "dimensionless"
+    if not follows or spectrum.kind != "reduced_table":
         return
-    for velocity in flow.velocity_m_per_s if flow.turbulence.kind == "dimensionless" else ():
+    for velocity in flow.velocity_m_per_s:
         moved = spectrum.model_copy(update={"velocity_m_per_s": velocity})
-        own = excitation.model_copy(update={"spectrum": moved})
-        for each in points_of_spectrum(structure, own):
+        own = turbulence.model_copy(update={"spectrum": moved})
+        for each in points_of_spectrum(tube, own):
             yield Problem(
                 "flow.velocity_m_per_s", f"is too far for the spectrum, which {each.text}", velocity
             )

@@ -11,9 +11,8 @@ from typing import Annotated, Literal
 from pydantic import Field, ValidationInfo, field_validator
 from pydantic_core import PydanticCustomError
 
-from vibroimpact.config.materials.fluids import fluid_properties
-
 from .material import given_or_named, named_or_given, named_temperature
+from .materials.fluids import fluid_properties
 from .mixture import Mixture, TwoPhaseDamping, given_or_mixed
 from .quantities import (
     By_kind,
@@ -100,13 +99,10 @@ class FluidInside(Section):
     model_config = named_or_given("density_kg_per_m3", instead="mixture")
     kind: Literal["inside"] = Field(description="This kind of fluid.")
     name: Fluid_name | None = Field(None, description=NAME, examples=["water"])
-    temperature_C: Temperature_C | None = Field(
-        None, validate_default=True, description=TEMPERATURE, examples=[20.0]
-    )
+    temperature_C: Temperature_C | None = Field(None, description=TEMPERATURE, examples=[20.0])
     mixture: Mixture | None = Field(None, description=MIXTURE)
     density_kg_per_m3: Fluid_density | None = Field(
         None,
-        validate_default=True,
         description=f"Density. {OR_NAMED[:-1]}, or of the mixture.",
         examples=[998.2],
     )
@@ -142,7 +138,6 @@ class FluidOutside(FluidInside):
     )
     viscosity_Pa_s: Viscosity | None = Field(
         None,
-        validate_default=True,
         description=f"Dynamic viscosity, 0 for no damping. {OR_NAMED}",
         examples=[1.0e-3],
     )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
@@ -18,11 +17,7 @@ from vibroimpact.geometry.sections import outer_width
 from vibroimpact.geometry.support_spans import contact_places, support_middles, support_spans
 
 from .key_problem import Problem, Problems
-from .schema import Grid
-from .structure import Path, UTube
-from .supports import Support
-
-Tube = UTube | Path
+from .stage_settings import ConfigPart
 
 TOLERANCE = 1e-9
 APART_M = 4.0 * LOCATION_TOLERANCE_M  # along the tube: two places, not one seen from a bend
@@ -31,12 +26,12 @@ MOST_SLENDER = 1e4
 MOST_OFFSET = 10.0  # gaps that a centre may be off: the structure then presses at rest
 
 
-def path_directions(structure: Tube) -> Problems:
+def path_directions(tube: ConfigPart) -> Problems:
     """Yield a problem unless the bends of a path have directions."""
-    if structure.kind != "path":
+    if tube.kind != "path":
         return
-    tangent = np.array(structure.start_direction) / np.linalg.norm(structure.start_direction)
-    for index, segment in enumerate(structure.segments):
+    tangent = np.array(tube.start_direction) / np.linalg.norm(tube.start_direction)
+    for index, segment in enumerate(tube.segments):
         if segment.kind != "bend":
             continue
         toward = np.array(segment.toward) - (np.array(segment.toward) @ tangent) * tangent
@@ -51,41 +46,38 @@ def path_directions(structure: Tube) -> Problems:
         tangent = math.cos(angle) * tangent + math.sin(angle) * toward / np.linalg.norm(toward)
 
 
-def slender(structure: Tube) -> Problems:
+def slender(tube: ConfigPart, line: Centreline) -> Problems:
     """Yield a problem unless a tube is shorter than MOST_SLENDER of its widths."""
-    centreline = centreline_of(structure)
-    width = outer_width(structure.section)
-    if centreline is None or centreline.length <= MOST_SLENDER * width:
-        return
-    key = "leg_length_m" if structure.kind == "u_tube" else "segments"
-    yield Problem(
-        f"structure.{key}",
-        f"makes the tube {centreline.length / width:.3g} times as long as it is wide, {width:g} m"
-        f" (at most {MOST_SLENDER:g}): lengths and section both in metres?",
-        f"{centreline.length:g} m",
-    )
+    width = outer_width(tube.section)
+    if line.length > MOST_SLENDER * width:
+        yield Problem(
+            f"structure.{'leg_length_m' if tube.kind == 'u_tube' else 'segments'}",
+            f"makes the tube {line.length / width:.3g} times as long as it is wide, {width:g} m"
+            f" (at most {MOST_SLENDER:g}): lengths and section both in metres?",
+            f"{line.length:g} m",
+        )
 
 
-def centreline_of(structure: Tube) -> Centreline | None:
+def centreline_of(tube: ConfigPart) -> Centreline | None:
     """Return the centreline, or None if its directions are a problem already reported."""
-    return None if any(path_directions(structure)) else build_centreline(structure)
+    return None if any(path_directions(tube)) else build_centreline(tube)
 
 
-def off_the_tube(centreline: Centreline, place: str, position: Sequence[float]) -> Problems:
+def off_the_tube(line: Centreline, place: str, position: Sequence[float]) -> Problems:
     """Yield a problem when `position` (3,) m is farther from the centreline than the tolerance."""
-    places = centreline.nearest(position)
+    places = line.nearest(position)
     arc_length, distance = min(places, key=lambda each: each[1])
     if distance > LOCATION_TOLERANCE_M:
-        nearest = centreline.position(arc_length)
+        nearest = line.position(arc_length)
         yield Problem(
             place,
             f"is {distance:.4f} m off the tube (at most {LOCATION_TOLERANCE_M} m): "
             f"the nearest point of the centreline is {np.round(nearest, 4).tolist()} m",
         )
         return
-    ends = {place for segment in centreline.segments for place in (segment.begin, segment.end)}
+    ends = {place for segment in line.segments for place in (segment.begin, segment.end)}
     for other in ends | {place for place, _ in places}:
-        near = np.linalg.norm(centreline.position(other) - position) <= LOCATION_TOLERANCE_M
+        near = np.linalg.norm(line.position(other) - position) <= LOCATION_TOLERANCE_M
         if near and abs(other - arc_length) > APART_M:
             yield Problem(
                 place,
@@ -96,29 +88,23 @@ def off_the_tube(centreline: Centreline, place: str, position: Sequence[float]) 
             return
 
 
-def ends_off_the_tube(centreline: Centreline, place: str, stretch: Any) -> Problems:
+def ends_off_the_tube(line: Centreline, place: str, stretch: ConfigPart) -> Problems:
     """Yield a problem for each of from_m and to_m that is given and off the tube."""
     for key in ("from_m", "to_m"):
         if (end := getattr(stretch, key)) is not None:
-            yield from off_the_tube(centreline, f"{place}.{key}", end)
+            yield from off_the_tube(line, f"{place}.{key}", end)
 
 
-def points_on_the_tube(structure: Tube, points: Mapping[str, Sequence[float]]) -> Problems:
+def points_on_the_tube(line: Centreline, points: Mapping[str, Sequence[float]]) -> Problems:
     """Yield a problem unless named points are on the tube."""
-    centreline = centreline_of(structure)
-    if centreline is None:
-        return
     for name, position in points.items():
-        yield from off_the_tube(centreline, f"points.{name}", position)
+        yield from off_the_tube(line, f"points.{name}", position)
 
 
-def supports_on_the_tube(structure: Tube, supports: Sequence[Support]) -> Problems:
+def supports_on_the_tube(tube: ConfigPart, line: Centreline, supports: ConfigPart) -> Problems:
     """Yield a problem unless supports are on one movable segment of the tube each, and
     do not overlap.
     """
-    centreline = centreline_of(structure)
-    if centreline is None:
-        return
     taken: list[tuple[str, float, float]] = []
     for index, support in enumerate(supports):
         if support.at_m is None or support.height_m is None or support.point is not None:
@@ -129,14 +115,14 @@ def supports_on_the_tube(structure: Tube, supports: Sequence[Support]) -> Proble
             )
             continue
         place = f"supports[{index}]"
-        off = list(off_the_tube(centreline, f"{place}.at_m", support.at_m))
-        off = off or list(_lattice_bars(centreline, place, support))
+        off = list(off_the_tube(line, f"{place}.at_m", support.at_m))
+        off = off or list(_lattice_bars(line, place, support))
         yield from off
         if off:
             continue
-        yield from _across_a_joint(centreline, place, support)
-        yield from _at_a_held_end(structure, centreline, place, support)
-        for low, high in support_spans(centreline, support):
+        yield from _across_a_joint(line, place, support)
+        yield from _at_a_held_end(tube, line, place, support)
+        for low, high in support_spans(line, support):
             for other, other_low, other_high in taken:
                 if low < other_high - TOLERANCE and other_low < high - TOLERANCE:
                     yield Problem(
@@ -146,20 +132,19 @@ def supports_on_the_tube(structure: Tube, supports: Sequence[Support]) -> Proble
             taken.append((support.name, low, high))
 
 
-def _lattice_bars(centreline: Centreline, place: str, support: Support) -> Problems:
+def _lattice_bars(line: Centreline, place: str, support: ConfigPart) -> Problems:
     """Yield a problem unless the pairs of bars of a lattice are apart, and on the tube."""
     spacing = getattr(support.profile, "spacing_m", 0.0)
     if spacing == 0.0:
         return
-    assert support.at_m is not None and support.height_m is not None
     if spacing < support.height_m:
         yield Problem(
             f"{place}.profile.spacing_m",
             f"is less than the height of the bars, height_m = {support.height_m:g}: give 0 for"
             " bars that cross at the same height, or more",
         )
-    middle = centreline.locate(support.at_m, support.name)
-    room = 2 * min(middle, centreline.length - middle)
+    middle = line.locate(support.at_m, support.name)
+    room = 2 * min(middle, line.length - middle)
     if spacing > room:
         yield Problem(
             f"{place}.profile.spacing_m",
@@ -167,17 +152,15 @@ def _lattice_bars(centreline: Centreline, place: str, support: Support) -> Probl
         )
 
 
-def _across_a_joint(centreline: Centreline, place: str, support: Support) -> Problems:
+def _across_a_joint(line: Centreline, place: str, support: ConfigPart) -> Problems:
     """Yield a problem if a support reaches across a joint of two segments."""
-    joints = [segment.end for segment in centreline.segments[:-1]]
-    spans = zip(
-        support_middles(centreline, support), support_spans(centreline, support), strict=True
-    )
+    joints = [segment.end for segment in line.segments[:-1]]
+    spans = zip(support_middles(line, support), support_spans(line, support), strict=True)
     for middle, (low, high) in spans:
         for joint in joints:
             if low < joint - TOLERANCE and joint < high - TOLERANCE:
                 room = 2 * abs(joint - middle)
-                position = np.round(centreline.position(joint), 4).tolist()
+                position = np.round(line.position(joint), 4).tolist()
                 yield Problem(
                     f"{place}.height_m",
                     f"reaches beyond the segment of the tube that '{support.name}' is on, from"
@@ -187,17 +170,11 @@ def _across_a_joint(centreline: Centreline, place: str, support: Support) -> Pro
                 )
 
 
-def _at_a_held_end(
-    structure: Tube, centreline: Centreline, place: str, support: Support
-) -> Problems:
+def _at_a_held_end(tube: ConfigPart, line: Centreline, place: str, support: ConfigPart) -> Problems:
     """Yield a problem if a support has a contact point at an end that does not move."""
-    kinds = (
-        (structure.root.kind, structure.root.kind)
-        if structure.kind == "u_tube"
-        else (structure.start.kind, structure.end.kind)
-    )
-    places = contact_places(centreline, support)
-    for kind, end in zip(kinds, (0.0, centreline.length), strict=True):
+    ends = (tube.root, tube.root) if tube.kind == "u_tube" else (tube.start, tube.end)
+    places = contact_places(line, support)
+    for kind, end in zip((each.kind for each in ends), (0.0, line.length), strict=True):
         if kind in ("clamped", "pinned") and np.any(np.abs(places - end) < SAME_PLACE_M):
             yield Problem(
                 f"{place}.at_m",
@@ -206,7 +183,7 @@ def _at_a_held_end(
             )
 
 
-def support_lists(supports: Sequence[Support]) -> Problems:
+def support_lists(supports: ConfigPart) -> Problems:
     """Yield a problem unless lists of a support have one entry per contact point."""
     for index, support in enumerate(supports):
         offset = support.centre_offset_m
@@ -224,9 +201,9 @@ def support_lists(supports: Sequence[Support]) -> Problems:
                 )
 
 
-def gaps(structure: Tube, grid: Grid, supports: Sequence[Support]) -> Problems:
+def gaps(tube: ConfigPart, grid: ConfigPart, supports: ConfigPart) -> Problems:
     """Yield a problem unless gaps are clearances, with their factors and the depth of lobes."""
-    radius = outer_width(structure.section) / 2
+    radius = outer_width(tube.section) / 2
     told = f"half the diameter, {radius:g} m"
     for index, gap in enumerate(grid.gap_m):
         if abs(gap) > radius:
@@ -237,6 +214,7 @@ def gaps(structure: Tube, grid: Grid, supports: Sequence[Support]) -> Problems:
             yield Problem(f"{place}.gap_m", f"is larger than {told}: {RADIAL}")
             continue
         gap, factor, depth = effective_gap(support, grid)
+        beyond = "extra_gap_m" if support.profile.kind == "planes" else "depth_m"
         if gap * factor > radius >= gap:
             yield Problem(
                 f"{place}.gap_factor",
@@ -245,18 +223,13 @@ def gaps(structure: Tube, grid: Grid, supports: Sequence[Support]) -> Problems:
             )
         elif gap * factor + depth > radius >= gap:
             yield Problem(
-                f"{place}.profile.{_beyond_the_gap(support)}",
+                f"{place}.profile.{beyond}",
                 f"makes the clearance {gap * factor + depth:.4g} m, larger than {told}: {RADIAL}",
                 depth,
             )
 
 
-def _beyond_the_gap(support: Support) -> str:
-    """Return the key of a profile that says how far it lies beyond the gap."""
-    return "extra_gap_m" if support.profile.kind == "planes" else "depth_m"
-
-
-def effective_gap(support: Support, grid: Grid) -> tuple[float, float, float]:
+def effective_gap(support: ConfigPart, grid: ConfigPart) -> tuple[float, float, float]:
     """Return (largest gap in m, largest factor of it, depth of lobes or extra gap in m) of a
     support.
     """
@@ -269,10 +242,15 @@ def effective_gap(support: Support, grid: Grid) -> tuple[float, float, float]:
     return max(grid.gap_m), float(np.max(support.gap_factor)), depth
 
 
-def offsets(grid: Grid, supports: Sequence[Support]) -> Problems:
+def _largest_offset(support: ConfigPart) -> float:
+    """Return the largest distance in m of a contact point's obstacle from the structure at rest."""
+    return float(np.max(np.linalg.norm(np.atleast_2d(support.centre_offset_m), axis=1)))
+
+
+def offsets(grid: ConfigPart, supports: ConfigPart) -> Problems:
     """Yield a problem unless offsets are some gaps."""
     for index, support in enumerate(supports):
-        largest = float(np.max(np.linalg.norm(np.atleast_2d(support.centre_offset_m), axis=1)))
+        largest = _largest_offset(support)
         gap, factor, depth = effective_gap(support, grid)
         clearance = gap * factor + depth
         if clearance > 0.0 and largest > MOST_OFFSET * clearance:
@@ -284,11 +262,11 @@ def offsets(grid: Grid, supports: Sequence[Support]) -> Problems:
             )
 
 
-def offsets_on_a_tube(structure: Tube, supports: Sequence[Support]) -> Problems:
+def offsets_on_a_tube(tube: ConfigPart, supports: ConfigPart) -> Problems:
     """Yield a problem unless offsets are smaller than the tube."""
-    radius = outer_width(structure.section) / 2
+    radius = outer_width(tube.section) / 2
     for index, support in enumerate(supports):
-        largest = float(np.max(np.linalg.norm(np.atleast_2d(support.centre_offset_m), axis=1)))
+        largest = _largest_offset(support)
         if largest > radius:
             yield Problem(
                 f"supports[{index}].centre_offset_m",

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 from vibroimpact.geometry.centreline import LOCATION_TOLERANCE_M
 
 from .geometry_checks import centreline_of, off_the_tube
-from .initial import Initial
 from .key_problem import Problem, Problems
-from .name_checks import TUBES, names_of_points
-from .structure import Path, Structure, UTube
+from .name_checks import TUBES
+from .stage_settings import ConfigPart
 
 
-def initial_fields(
-    structure: Structure, points: Mapping[str, Sequence[float]], initial: Initial
-) -> Problems:
+def initial_fields(structure: ConfigPart, names: Sequence[str], initial: ConfigPart) -> Problems:
     """Yield a problem unless the initial state is one that the kind of structure can have."""
     if structure.kind in (*TUBES, "identified") and (
         initial.displacement_m or initial.velocity_m_per_s
@@ -36,11 +32,10 @@ def initial_fields(
                 place, f"is given together with initial.{values}: give one of them", field.kind
             )
         if field.kind == "mode":
-            names = names_of_points(structure, points)
             if field.point not in names:
                 known = ", ".join(names) or "none"
                 yield Problem(f"{place}.point", f"is not a named point: known are {known}")
-        elif not isinstance(structure, UTube | Path):
+        elif structure.kind not in TUBES:
             yield Problem(
                 f"{place}.kind",
                 f"is for tubes, structure.kind is {structure.kind}: give initial.{values}, or mode",
@@ -49,7 +44,7 @@ def initial_fields(
             yield from _places(structure, f"{place}.values", field.values)
 
 
-def _places(structure: UTube | Path, place: str, values: Sequence[Any]) -> Problems:
+def _places(structure: ConfigPart, place: str, values: Sequence[ConfigPart]) -> Problems:
     """Yield a problem unless values are given along the whole tube, in order."""
     centreline = centreline_of(structure)
     if centreline is None:

@@ -6,43 +6,32 @@ configuration as it runs holds the numbers.
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from pydantic import ConfigDict, Field, ValidationInfo, field_validator
 from pydantic.config import JsonDict, JsonValue
 from pydantic_core import PydanticCustomError
 
-from vibroimpact.config.materials.solids import solid_properties
-
+from .materials.solids import SOLIDS, solid_properties
 from .quantities import NOT_GIVEN, Density, Poisson_ratio, Section, Temperature_C, Youngs_modulus_Pa
 
-Metal = Literal[
-    "inconel_600",
-    "inconel_690",
-    "incoloy_800",
-    "stainless_steel_304",
-    "stainless_steel_304L",
-    "stainless_steel_316",
-    "stainless_steel_316L",
-    "stainless_steel_405",
-    "stainless_steel_410",
-    "carbon_steel",
-    "zircaloy_4",
-    "titanium_grade_2",
-]
+if TYPE_CHECKING:
+    Metal: TypeAlias = str
+else:
+    Metal = Literal[tuple(SOLIDS)]
 ROOM_TEMPERATURE_C = 20.0
 OR_NAMED = "Null for that of the named metal."
 
 
 def named_or_given(*keys: str, instead: str | None = None) -> ConfigDict:
-    """Return the setting that states in the JSON schema: a name, or all of some keys, or a section
-    that stands `instead` of them.
+    """Return the settings of a section whose defaults are looked up: its JSON schema states a name,
+    or all of some keys, or a section that stands `instead` of them.
     """
     named: JsonDict = {"required": ["name"], "properties": {"name": {"type": "string"}}}
     choices: list[JsonValue] = [named, {"required": list(keys)}]
     if instead is not None:
         choices.append({"required": [instead], "properties": {instead: {"type": "object"}}})
-    return ConfigDict(json_schema_extra={"anyOf": choices})
+    return ConfigDict(json_schema_extra={"anyOf": choices}, validate_default=True)
 
 
 def named_temperature(value: Any, info: ValidationInfo, properties: Any) -> Any:
@@ -86,23 +75,16 @@ class Material(Section):
         None, description="Name of a metal; null for numbers.", examples=["inconel_600"]
     )
     temperature_C: Temperature_C | None = Field(
-        None,
-        validate_default=True,
-        description="Temperature of the named metal; null for 20 °C.",
-        examples=[300.0],
+        None, description="Temperature of the named metal; null for 20 °C.", examples=[300.0]
     )
     young_modulus_Pa: Youngs_modulus_Pa | None = Field(
-        None,
-        validate_default=True,
-        description=f"Young's modulus. {OR_NAMED}",
-        examples=[2.02e11],
+        None, description=f"Young's modulus. {OR_NAMED}", examples=[2.02e11]
     )
     poisson_ratio: Poisson_ratio | None = Field(
-        None, validate_default=True, description=f"Poisson's ratio. {OR_NAMED}", examples=[0.3]
+        None, description=f"Poisson's ratio. {OR_NAMED}", examples=[0.3]
     )
     density_kg_per_m3: Density | None = Field(
         None,
-        validate_default=True,
         description=f"Mass per volume of the material. {OR_NAMED} The mass of a fluid can be"
         " included here, or stated in structure.fluid.",
         examples=[8330.0],

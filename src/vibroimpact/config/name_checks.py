@@ -4,22 +4,16 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
-from .excitation import Excitation
 from .key_problem import Problem, Problems, near_or_known
-from .schema import Identification, RecordKeys
-from .structure import Structure
-from .supports import LocalElement, PointMass, Support
+from .stage_settings import ConfigPart
 
 TUBES = ("u_tube", "path")
 
 
-def names_twice(
-    supports: Sequence[Support], elements: Sequence[LocalElement], masses: Sequence[PointMass]
-) -> Problems:
+def names_twice(supports: ConfigPart, elements: ConfigPart, masses: ConfigPart) -> Problems:
     """Yield a problem unless supports, elements and masses have names of their own."""
     for kind, entries in (("supports", supports), ("elements", elements), ("masses", masses)):
         for name, times in Counter(entry.name for entry in entries).items():
@@ -27,7 +21,7 @@ def names_twice(
                 yield Problem(kind, f"names {times} {kind}: give each a name of its own", name)
 
 
-def drag_partners(elements: Sequence[LocalElement]) -> Problems:
+def drag_partners(elements: ConfigPart) -> Problems:
     """Yield a problem unless elements that share the speed of a drag are there."""
     names = [element.name for element in elements]
     for index, element in enumerate(elements):
@@ -41,45 +35,33 @@ def drag_partners(elements: Sequence[LocalElement]) -> Problems:
             )
 
 
-def points_of_force(
-    structure: Structure, points: Mapping[str, Sequence[float]], excitation: Excitation
-) -> Problems:
+def points_of_force(names: Sequence[str], excitation: ConfigPart) -> Problems:
     """Yield a problem unless points that the excitation names are there."""
-    yield from _unknown(_force_points(excitation), structure, points)
+    yield from _unknown(_force_points(excitation), names)
 
 
-def points_of_sensors(
-    structure: Structure, points: Mapping[str, Sequence[float]], record: RecordKeys
-) -> Problems:
+def points_of_sensors(names: Sequence[str], record: ConfigPart) -> Problems:
     """Yield a problem unless points that the sensors name are there."""
     named = enumerate(record.sensors.points if record.sensors else ())
-    yield from _unknown(
-        ((f"record.sensors.points[{i}]", name) for i, name in named), structure, points
-    )
+    yield from _unknown(((f"record.sensors.points[{i}]", name) for i, name in named), names)
 
 
-def points_of_supports(
-    structure: Structure, points: Mapping[str, Sequence[float]], supports: Sequence[Support]
-) -> Problems:
+def points_of_supports(names: Sequence[str], supports: ConfigPart) -> Problems:
     """Yield a problem unless points that supports name are there."""
-    yield from _unknown(_attached_points("supports", supports), structure, points)
+    yield from _unknown(_attached_points("supports", supports), names)
 
 
-def points_of_elements(
-    structure: Structure, points: Mapping[str, Sequence[float]], elements: Sequence[LocalElement]
-) -> Problems:
+def points_of_elements(names: Sequence[str], elements: ConfigPart) -> Problems:
     """Yield a problem unless points that elements name are there."""
-    yield from _unknown(_attached_points("elements", elements), structure, points)
+    yield from _unknown(_attached_points("elements", elements), names)
 
 
-def points_of_masses(
-    structure: Structure, points: Mapping[str, Sequence[float]], masses: Sequence[PointMass]
-) -> Problems:
+def points_of_masses(names: Sequence[str], masses: ConfigPart) -> Problems:
     """Yield a problem unless points that masses name are there."""
-    yield from _unknown(_attached_points("masses", masses), structure, points)
+    yield from _unknown(_attached_points("masses", masses), names)
 
 
-def _attached_points(part: str, entries: Sequence[Any]) -> Iterator[tuple[str, str]]:
+def _attached_points(part: str, entries: Sequence[ConfigPart]) -> Iterator[tuple[str, str]]:
     """Yield (place, point) of everything that is attached to a point, or between two."""
     for i, entry in enumerate(entries):
         for key in ("point", "other_point"):
@@ -87,18 +69,15 @@ def _attached_points(part: str, entries: Sequence[Any]) -> Iterator[tuple[str, s
                 yield f"{part}[{i}].{key}", getattr(entry, key)
 
 
-def _unknown(
-    named: Iterable[tuple[str, str]], structure: Structure, points: Mapping[str, Sequence[float]]
-) -> Problems:
+def _unknown(named: Iterable[tuple[str, str]], names: Sequence[str]) -> Problems:
     """Yield a problem for each (place, point) that is not there."""
-    names = names_of_points(structure, points)
     for place, name in named:
         if name not in names:
             remedy = near_or_known(name, names) if names else "points is empty, add it there"
             yield Problem(place, f"is not one of the named points: {remedy}")
 
 
-def names_of_points(structure: Structure, points: Mapping[str, Sequence[float]]) -> list[str]:
+def names_of_points(structure: ConfigPart, points: Mapping[str, Sequence[float]]) -> list[str]:
     """Return the names of the points that a structure has."""
     if structure.kind == "chain":
         return [mass.name for mass in structure.masses]
@@ -109,7 +88,7 @@ def names_of_points(structure: Structure, points: Mapping[str, Sequence[float]])
     return list(points)
 
 
-def _force_points(excitation: Excitation) -> Iterator[tuple[str, str]]:
+def _force_points(excitation: ConfigPart) -> Iterator[tuple[str, str]]:
     """Yield (place, point) of everything that the excitation names."""
     if hasattr(excitation, "point"):
         yield "excitation.point", excitation.point
@@ -120,7 +99,7 @@ def _force_points(excitation: Excitation) -> Iterator[tuple[str, str]]:
         )
 
 
-def identified_points(record: RecordKeys, identification: Identification) -> Problems:
+def identified_points(record: ConfigPart, identification: ConfigPart) -> Problems:
     """Yield a problem unless points to identify from are recorded."""
     named = [
         ("identification.response_point", identification.response_point),
@@ -136,15 +115,13 @@ def identified_points(record: RecordKeys, identification: Identification) -> Pro
 
 
 def identification_needs(
-    structure: Structure,
-    excitation: Excitation,
-    record: RecordKeys,
-    supports: Sequence[Support],
-    identification: Identification,
+    structure: ConfigPart,
+    excitation: ConfigPart,
+    record: ConfigPart,
+    supports: ConfigPart,
+    identification: ConfigPart,
 ) -> Problems:
-    """Yield a problem unless the supports of a tube are identified under a broadband
-    force.
-    """
+    """Yield a problem unless the supports of a tube are identified under a broadband force."""
     if not supports:
         yield Problem(
             "identification",
@@ -171,9 +148,7 @@ def identification_needs(
         )
 
 
-def grouped_supports_are_there(
-    supports: Sequence[Support], identification: Identification
-) -> Problems:
+def grouped_supports_are_there(supports: ConfigPart, identification: ConfigPart) -> Problems:
     """Yield a problem unless groups name supports that are there, each once."""
     if isinstance(identification.groups, str):
         return
@@ -189,34 +164,33 @@ def grouped_supports_are_there(
             taken.setdefault(name, index)
 
 
-def point_supports(structure: Structure, supports: Sequence[Support]) -> Problems:
+def point_supports(other: ConfigPart, supports: ConfigPart) -> Problems:
     """Yield a problem unless supports of a structure other than a tube are at its points."""
     for index, support in enumerate(supports):
         if support.point is None or support.at_m is not None:
             yield Problem(
                 f"supports[{index}]",
-                f"is on a structure of kind {structure.kind}: give point, and no at_m",
+                f"is on a structure of kind {other.kind}: give point, and no at_m",
                 support.name,
             )
 
 
-def same_stop_twice(structure: Structure, supports: Sequence[Support]) -> Problems:
+def same_stop_twice(other: ConfigPart, supports: ConfigPart) -> Problems:
     """Yield a problem unless supports at one point of a structure differ."""
-    known: list[Support] = []
     for index, support in enumerate(supports):
-        for other in known:
-            if support.model_copy(update={"name": other.name}) == other:
+        for known in supports[:index]:
+            if support.model_copy(update={"name": known.name}) == known:
                 yield Problem(
                     f"supports[{index}]",
-                    f"is '{other.name}' again: leave it out, or add up the stiffness of the two",
+                    f"is '{known.name}' again: leave it out, or add up the stiffness of the two",
                     support.name,
                 )
-        known.append(support)
 
 
-def places_of_points(structure: Structure, points: Mapping[str, Sequence[float]]) -> Problems:
+def places_of_points(
+    other: ConfigPart, names: Sequence[str], points: Mapping[str, Sequence[float]]
+) -> Problems:
     """Yield a problem unless places are those of points that a structure other than a tube has."""
-    names = names_of_points(structure, points)
     for name in points:
         if name not in names:
             yield Problem(
@@ -225,7 +199,7 @@ def places_of_points(structure: Structure, points: Mapping[str, Sequence[float]]
             )
 
 
-def chain_names(structure: Structure) -> Problems:
+def chain_names(structure: ConfigPart) -> Problems:
     """Yield a problem unless masses have names, and springs name them."""
     if structure.kind != "chain":
         return
@@ -253,7 +227,7 @@ def chain_names(structure: Structure) -> Problems:
                 )
 
 
-def sensors(record: RecordKeys) -> Problems:
+def sensors(record: ConfigPart) -> Problems:
     """Yield a problem unless sensors are named once."""
     if record.sensors is None:
         return
@@ -265,7 +239,7 @@ def sensors(record: RecordKeys) -> Problems:
                 )
 
 
-def sensors_of_a_tube(structure: Structure, record: RecordKeys) -> Problems:
+def sensors_of_a_tube(tube: ConfigPart, record: ConfigPart) -> Problems:
     """Yield a problem unless a tube has sensors, the shape line among their directions."""
     if record.sensors is None:
         yield Problem(
@@ -280,7 +254,7 @@ def sensors_of_a_tube(structure: Structure, record: RecordKeys) -> Problems:
 
 
 def driven_direction_is_recorded(
-    structure: Structure, excitation: Excitation, record: RecordKeys
+    structure: ConfigPart, excitation: ConfigPart, record: ConfigPart
 ) -> Problems:
     """Yield a problem unless the direction of the force is recorded."""
     if not hasattr(excitation, "direction"):

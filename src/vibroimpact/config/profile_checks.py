@@ -10,18 +10,16 @@ import numpy as np
 from vibroimpact.geometry.centreline import Centreline
 from vibroimpact.geometry.directions import unit_vector
 
-from .geometry_checks import centreline_of, off_the_tube
+from .geometry_checks import off_the_tube
 from .key_problem import Problem, Problems
-from .profiles import Bars, Broached, Lattice, Planes, has_flat_lands
-from .quantities import Vector
-from .structure import Path, Structure, UTube
-from .supports import Support
+from .profiles import has_flat_lands
+from .stage_settings import ConfigPart
 
 SAME_DEG = 1e-6
 ACROSS_DEG = 2.0  # a normal given with a few digits may be this far off the plane across the tube
 
 
-def gaps_of_supports(structure: Structure, supports: Sequence[Support]) -> Problems:
+def gaps_of_supports(structure: ConfigPart, supports: ConfigPart) -> Problems:
     """Yield a problem unless only flat stops touch at rest."""
     for index, support in enumerate(supports):
         flat = has_flat_lands(support.profile)
@@ -33,7 +31,7 @@ def gaps_of_supports(structure: Structure, supports: Sequence[Support]) -> Probl
             )
 
 
-def preloads(supports: Sequence[Support]) -> Problems:
+def preloads(supports: ConfigPart) -> Problems:
     """Yield a problem unless only flat lands press, and their interference is not given twice."""
     for index, support in enumerate(supports):
         if support.preload_N is None:
@@ -52,21 +50,26 @@ def preloads(supports: Sequence[Support]) -> Problems:
             )
 
 
-def profile_normals(structure: Structure, supports: Sequence[Support]) -> Problems:
-    """Yield a problem unless a profile has one direction, across the structure."""
-    tube = isinstance(structure, UTube | Path)
-    centreline = centreline_of(structure) if isinstance(structure, UTube | Path) else None
-    if tube and centreline is None:
-        return
+def normals_on_a_tube(line: Centreline, supports: ConfigPart) -> Problems:
+    """Yield a problem unless a profile has one direction, across the tube."""
+    yield from _normals(line, supports)
+
+
+def normals_at_points(other: ConfigPart, supports: ConfigPart) -> Problems:
+    """Yield a problem unless a profile has one direction, across the axis of contact."""
+    yield from _normals(None, supports)
+
+
+def _normals(line: Centreline | None, supports: ConfigPart) -> Problems:
     for index, support in enumerate(supports):
         profile = support.profile
         place = f"supports[{index}].profile"
-        if isinstance(profile, Planes):
+        if profile.kind == "planes":
             yield from _stops_twice(f"{place}.normals_deg", profile.normals_deg)
             yield from _extra_gaps(f"{place}.extra_gap_m", profile, support)
-        if not isinstance(profile, Broached | Bars | Lattice):
+        if profile.kind not in ("broached", "bars", "lattice"):
             continue
-        if isinstance(profile, Lattice) and profile.spacing_m > 0.0 and not tube:
+        if profile.kind == "lattice" and profile.spacing_m > 0.0 and line is None:
             yield Problem(f"{place}.spacing_m", "is for tubes: leave it out")
         if (profile.normal is None) == (profile.angle_deg is None):
             given = "neither" if profile.normal is None else "both"
@@ -76,10 +79,10 @@ def profile_normals(structure: Structure, supports: Sequence[Support]) -> Proble
                 profile.kind,
             )
         elif profile.normal is not None:
-            yield from _across(centreline, f"{place}.normal", profile.normal, support.at_m)
+            yield from _across(line, f"{place}.normal", profile.normal, support.at_m)
 
 
-def _extra_gaps(place: str, profile: Planes, support: Support) -> Problems:
+def _extra_gaps(place: str, profile: ConfigPart, support: ConfigPart) -> Problems:
     """Yield a problem unless there is an extra gap for each stop, and no preload."""
     given, stops = len(profile.extra_gap_m), len(profile.normals_deg)
     if given not in (0, stops):
@@ -105,21 +108,21 @@ def _stops_twice(place: str, normals_deg: Sequence[float]) -> Problems:
 
 
 def _across(
-    centreline: Centreline | None, place: str, normal: Vector, at_m: Vector | None
+    line: Centreline | None, place: str, normal: Sequence[float], at_m: Sequence[float] | None
 ) -> Problems:
     """Yield a problem unless the normal of a profile is across the structure at its support.
 
     at_m: position of the support on the centreline.
     """
     tangent = np.array([0.0, 0.0, 1.0])  # a structure other than a tube has contact along x and y
-    if centreline is not None:
-        if at_m is None or any(off_the_tube(centreline, place, at_m)):
+    if line is not None:
+        if at_m is None or any(off_the_tube(line, place, at_m)):
             return
-        tangent = centreline.direction(centreline.locate(at_m, place))
+        tangent = line.direction(line.locate(at_m, place))
     along = float(unit_vector(normal) @ tangent)
     if abs(along) <= math.sin(math.radians(ACROSS_DEG)):
         return
-    where = "the tube, which runs along" if centreline is not None else "the axis of contact,"
+    where = "the tube, which runs along" if line is not None else "the axis of contact,"
     across = unit_vector(normal) - along * tangent
     remedy = (
         f"give the part across, {np.round(unit_vector(across), 4).tolist()}"

@@ -4,11 +4,12 @@ end with it, and a remedy for values out of range.
 
 from __future__ import annotations
 
+import operator
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import (
     AfterValidator,
@@ -24,11 +25,8 @@ from pydantic import (
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from .reserved_names import is_reserved
-
 LARGEST = 1e20
 SHORTEST = 1e-9  # length of a direction, any unit
-LONGEST_NAME = 100  # characters of a study's name; with the name of a case it names files
 NOT_GIVEN = "not_given"  # type of the error of a key that another key makes necessary
 
 
@@ -71,13 +69,19 @@ class Checked:
 
     remedy: str
 
-    def check(self, value: Any) -> Any:
-        """Return the value. Raises PydanticCustomError with the remedy."""
+    def fault(self, value: Any) -> str | None:
+        """Return what is wrong with a value, with the remedy; None if nothing is."""
         raise NotImplementedError
 
     def json_keywords(self) -> dict[str, Any]:
-        """Return the JSON schema keywords that state the same as the check."""
-        raise NotImplementedError
+        """Return the JSON schema keywords that state the same as the check, if there are any."""
+        return {}
+
+    def check(self, value: Any) -> Any:
+        """Return the value. Raises PydanticCustomError with the fault."""
+        if fault := self.fault(value):
+            raise PydanticCustomError("rule", "{fault}", {"fault": fault})
+        return value
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
@@ -92,6 +96,23 @@ class Checked:
         return {**handler(schema), **self.json_keywords()}
 
 
+class Bound(NamedTuple):
+    """A kind of bound: how a sentence, a table and JSON schema write it, and what holds."""
+
+    sign: str
+    shown: str
+    keyword: str
+    holds: Callable[[float, float], bool]
+
+
+BOUNDS = {  # key of a Range
+    "above": Bound(">", ">", "exclusiveMinimum", operator.gt),
+    "at_least": Bound(">=", "≥", "minimum", operator.ge),
+    "at_most": Bound("<=", "≤", "maximum", operator.le),
+    "below": Bound("<", "<", "exclusiveMaximum", operator.lt),
+}
+
+
 @dataclass(frozen=True)
 class Range(Checked):
     """Bounds of a number: above < value, at_least <= value <= at_most, value < below."""
@@ -101,41 +122,19 @@ class Range(Checked):
     at_most: float | None = None
     below: float | None = None
 
-    def check(self, value: float) -> float:
-        """Return the value. Raises PydanticCustomError when it is out of bounds."""
-        for sign, bound, holds in (
-            (">", self.above, lambda bound: value > bound),
-            (">=", self.at_least, lambda bound: value >= bound),
-            ("<=", self.at_most, lambda bound: value <= bound),
-            ("<", self.below, lambda bound: value < bound),
-        ):
-            if bound is not None and not holds(bound):
-                raise PydanticCustomError(
-                    "range",
-                    "must be {rule}: {remedy}",
-                    {"rule": f"{sign} {bound:g}", "remedy": self.remedy},
-                )
-        return value
+    def bounds(self) -> list[tuple[Bound, float]]:
+        """Return [(kind, number)] of the bounds there are."""
+        given = [(kind, getattr(self, key)) for key, kind in BOUNDS.items()]
+        return [(kind, bound) for kind, bound in given if bound is not None]
 
-    def bounds(self) -> list[tuple[str, float]]:
-        """Return [(sign, bound)] of the bounds there are."""
-        every = (
-            (">", self.above),
-            ("≥", self.at_least),
-            ("≤", self.at_most),
-            ("<", self.below),
-        )
-        return [(sign, bound) for sign, bound in every if bound is not None]
+    def fault(self, value: float) -> str | None:
+        """Return which bound a number breaks."""
+        broken = (each for each in self.bounds() if not each[0].holds(value, each[1]))
+        return next((f"must be {kind.sign} {n:g}: {self.remedy}" for kind, n in broken), None)
 
     def json_keywords(self) -> dict[str, Any]:
         """Return minimum, maximum and their exclusive forms."""
-        names = {
-            ">": "exclusiveMinimum",
-            "≥": "minimum",
-            "≤": "maximum",
-            "<": "exclusiveMaximum",
-        }
-        return {names[sign]: bound for sign, bound in self.bounds()}
+        return {kind.keyword: bound for kind, bound in self.bounds()}
 
 
 @dataclass(frozen=True)
@@ -144,15 +143,9 @@ class Length(Checked):
 
     count: int
 
-    def check(self, value: tuple) -> tuple:
-        """Return the value. Raises PydanticCustomError when it has another length."""
-        if len(value) != self.count:
-            raise PydanticCustomError(
-                "length",
-                "has {count} values: {remedy}",
-                {"count": len(value), "remedy": self.remedy},
-            )
-        return value
+    def fault(self, value: tuple) -> str | None:
+        """Return that a list has another length."""
+        return None if len(value) == self.count else f"has {len(value)} values: {self.remedy}"
 
     def json_keywords(self) -> dict[str, Any]:
         """Return minItems and maxItems."""
@@ -165,11 +158,9 @@ class Pattern(Checked):
 
     expression: str
 
-    def check(self, value: str) -> str:
-        """Return the value. Raises PydanticCustomError when it does not match."""
-        if not re.fullmatch(self.expression, value):
-            raise PydanticCustomError("name", "must be {remedy}", {"remedy": self.remedy})
-        return value
+    def fault(self, value: str) -> str | None:
+        """Return that a text does not match."""
+        return None if re.fullmatch(self.expression, value) else f"must be {self.remedy}"
 
     def json_keywords(self) -> dict[str, Any]:
         """Return the pattern."""
@@ -180,13 +171,10 @@ class Pattern(Checked):
 class NotZero(Checked):
     """The components of a direction, of which one at least is not 0."""
 
-    def check(self, value: tuple) -> tuple:
-        """Return the value. Raises PydanticCustomError for a direction without length."""
-        if all(abs(component) < SHORTEST for component in value):
-            raise PydanticCustomError(
-                "direction", "is not a direction: {remedy}", {"remedy": self.remedy}
-            )
-        return value
+    def fault(self, value: tuple) -> str | None:
+        """Return that a direction has no length."""
+        still = all(abs(component) < SHORTEST for component in value)
+        return f"is not a direction: {self.remedy}" if still else None
 
     def json_keywords(self) -> dict[str, Any]:
         """Return that not all items are 0."""
@@ -195,44 +183,12 @@ class NotZero(Checked):
 
 @dataclass(frozen=True)
 class Ascending(Checked):
-    """Numbers of which each is above the one before."""
+    """Numbers of which each is above the one before; a JSON schema can not compare them."""
 
-    def check(self, value: tuple) -> tuple:
-        """Return the value. Raises PydanticCustomError for another order."""
-        if any(after <= before for before, after in pairwise(value)):
-            raise PydanticCustomError(
-                "order", "is not in ascending order: {remedy}", {"remedy": self.remedy}
-            )
-        return value
-
-    def json_keywords(self) -> dict[str, Any]:
-        """Return {}: a JSON schema can not compare numbers."""
-        return {}
-
-
-@dataclass(frozen=True)
-class OwnFolder(Checked):
-    """A name of a folder in results/ that no target of the workflow writes to."""
-
-    def check(self, value: str) -> str:
-        """Return the value. Raises PydanticCustomError for a reserved or a long name."""
-        if is_reserved(value):
-            raise PydanticCustomError(
-                "name",
-                "is the folder of another target in results/: {remedy}",
-                {"remedy": self.remedy},
-            )
-        if len(value) > LONGEST_NAME:
-            raise PydanticCustomError(
-                "name",
-                "has {length} characters, at most {most}: {remedy}",
-                {"length": len(value), "most": LONGEST_NAME, "remedy": self.remedy},
-            )
-        return value
-
-    def json_keywords(self) -> dict[str, Any]:
-        """Return the greatest length."""
-        return {"maxLength": LONGEST_NAME}
+    def fault(self, value: tuple) -> str | None:
+        """Return that numbers are in another order."""
+        falls = any(after <= before for before, after in pairwise(value))
+        return f"is not in ascending order: {self.remedy}" if falls else None
 
 
 Diameter_m = Annotated[Number, Range("in metres? 22.22 mm is 0.02222", above=0, at_most=2)]
@@ -296,11 +252,6 @@ Phase_deg = Annotated[Number, Range("in degrees, between -360 and 360", at_least
 Name = Annotated[
     str,
     Pattern("a name of letters, digits and _ that begins with a letter", "[A-Za-z][A-Za-z0-9_]*"),
-]
-Study_name = Annotated[
-    str,
-    Pattern("a folder name of letters, digits, _ and -", "[A-Za-z0-9][A-Za-z0-9_-]*"),
-    OwnFolder("give the study a short name of its own, as in my_tube"),
 ]
 Axis = Literal["x", "y", "z"]
 Vector = Annotated[tuple[Number, ...], Length("give three, along x, y and z", 3)]

@@ -7,7 +7,8 @@ The checks, the JSON schema and the key reference all read this declaration.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -17,6 +18,7 @@ from .initial import Initial
 from .quantities import (
     Axis,
     Band_Hz,
+    Checked,
     Duration_s,
     Force_N,
     Fraction_of_gap,
@@ -29,6 +31,7 @@ from .quantities import (
     One,
     One_or_list,
     Overlap,
+    Pattern,
     Position,
     Positive_factor,
     Range,
@@ -36,13 +39,39 @@ from .quantities import (
     Start_up_s,
     Stiffness_range,
     Stress_Pa,
-    Study_name,
     Unit,
     Whole,
 )
+from .reserved_names import is_reserved
 from .structure import Damping, ModalDamping, Structure
 from .supports import LocalElement, PointMass, Support
 from .wear import Wear
+
+LONGEST_NAME = 100  # characters of a study's name; with the name of a case it names files
+
+
+@dataclass(frozen=True)
+class OwnFolder(Checked):
+    """A name of a folder in results/ that no target of the workflow writes to."""
+
+    def fault(self, value: str) -> str | None:
+        """Return that a name is reserved, or too long."""
+        if is_reserved(value):
+            return f"is the folder of another target in results/: {self.remedy}"
+        if len(value) > LONGEST_NAME:
+            return f"has {len(value)} characters, at most {LONGEST_NAME}: {self.remedy}"
+        return None
+
+    def json_keywords(self) -> dict[str, Any]:
+        """Return the greatest length."""
+        return {"maxLength": LONGEST_NAME}
+
+
+Study_name = Annotated[
+    str,
+    Pattern("a folder name of letters, digits, _ and -", "[A-Za-z0-9][A-Za-z0-9_-]*"),
+    OwnFolder("give the study a short name of its own, as in my_tube"),
+]
 
 
 class Basis(Section):

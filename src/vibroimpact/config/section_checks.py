@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
-from vibroimpact.geometry.centreline import SAME_PLACE_M
+from vibroimpact.geometry.centreline import SAME_PLACE_M, Centreline
 from vibroimpact.geometry.sections import ROUND, outer_width, section_properties
 
-from .geometry_checks import Tube, centreline_of, ends_off_the_tube
+from .geometry_checks import ends_off_the_tube
 from .key_problem import Problem, Problems
-from .schema import RecordKeys
-from .structure import Structure
-from .wear import Wear
+from .stage_settings import ConfigPart
 
 CROSS = 1e-3  # sine of the least angle between the first axis of a section and the tube
 
 
-def wall(structure: Tube) -> Problems:
+def wall(tube: ConfigPart) -> Problems:
     """Yield a problem unless the wall is thinner than the radius."""
-    section = structure.section
+    section = tube.section
     if section.kind == "tube" and section.wall_thickness_m >= section.outer_diameter_m / 2:
         yield Problem(
             "structure.section.wall_thickness_m",
@@ -28,7 +24,7 @@ def wall(structure: Tube) -> Problems:
         )
 
 
-def wall_that_wears(structure: Structure, wear: Wear) -> Problems:
+def wall_that_wears(structure: ConfigPart, wear: ConfigPart) -> Problems:
     """Yield a problem unless the structure has the wall of a tube."""
     if getattr(getattr(structure, "section", None), "kind", "none") != "tube":
         yield Problem(
@@ -36,20 +32,16 @@ def wall_that_wears(structure: Structure, wear: Wear) -> Problems:
         )
 
 
-def wear_needs_statistics(record: RecordKeys, wear: Wear) -> Problems:
+def wear_needs_statistics(record: ConfigPart, wear: ConfigPart) -> Problems:
     """Yield a problem if records hold single steps, which have no work rates."""
     if record.every_step:
         yield Problem("record.every_step", "gives no wear work rate: leave it out, or wear")
 
 
-def axes_of_the_section(structure: Tube) -> Problems:
+def axes_of_the_section(tube: ConfigPart, line: Centreline) -> Problems:
     """Yield a problem unless the first axis of a section is across the tube at its start."""
-    axis = getattr(structure.section, "first_axis", None)
-    centreline = centreline_of(structure)
-    if axis is None or centreline is None:
-        return
-    tangent = centreline.direction(0.0)
-    if np.linalg.norm(np.cross(axis, tangent)) <= CROSS * np.linalg.norm(axis):
+    axis, tangent = getattr(tube.section, "first_axis", None), line.direction(0.0)
+    if axis is not None and np.linalg.norm(np.cross(axis, tangent)) <= CROSS * np.linalg.norm(axis):
         yield Problem(
             "structure.section.first_axis",
             f"is along the tube at its start, {np.round(tangent, 4).tolist()}: give a direction"
@@ -57,12 +49,11 @@ def axes_of_the_section(structure: Tube) -> Problems:
         )
 
 
-def enclosed_area(structure: Tube) -> Problems:
+def enclosed_area(tube: ConfigPart) -> Problems:
     """Yield a problem unless a general section encloses its own material."""
-    section = structure.section
-    if section.kind != "general" or section.enclosed_area_m2 is None:
-        return
-    if section.enclosed_area_m2 < section.area_m2:
+    section = tube.section
+    given = section.enclosed_area_m2 if section.kind == "general" else None
+    if given is not None and given < section.area_m2:
         yield Problem(
             "structure.section.enclosed_area_m2",
             f"is below the area of the material, {section.area_m2:g} m2: it includes both material"
@@ -70,20 +61,19 @@ def enclosed_area(structure: Tube) -> Problems:
         )
 
 
-def fluids(structure: Tube) -> Problems:
+def fluids(tube: ConfigPart, line: Centreline) -> Problems:
     """Yield a problem unless fluids fit the section, and do not overlap on the same side."""
-    centreline = centreline_of(structure)
-    if centreline is None or any(wall(structure)) or any(enclosed_area(structure)):
+    if any(wall(tube)) or any(enclosed_area(tube)):
         return
     taken: list[tuple[str, float, float]] = []
-    for index, fluid in enumerate(structure.fluid):
+    for index, fluid in enumerate(tube.fluid):
         place = f"structure.fluid[{index}]"
-        yield from _fits(structure, fluid, place)
-        off = [*ends_off_the_tube(centreline, place, fluid)]
+        yield from _fits(tube, fluid, place)
+        off = [*ends_off_the_tube(line, place, fluid)]
         yield from off
         if off:
             continue
-        low, high = centreline.stretch(fluid.from_m, fluid.to_m, place)
+        low, high = line.stretch(fluid.from_m, fluid.to_m, place)
         if high - low <= SAME_PLACE_M:
             yield Problem(f"{place}.to_m", "is the start of the fluid: give another position")
         for side, other_low, other_high in taken:
@@ -92,11 +82,11 @@ def fluids(structure: Tube) -> Problems:
         taken.append((fluid.kind, low, high))
 
 
-def _fits(structure: Tube, fluid: Any, place: str) -> Problems:
+def _fits(tube: ConfigPart, fluid: ConfigPart, place: str) -> Problems:
     """Yield a problem unless the section has an inside, or its surroundings are those stated."""
-    section = structure.section
+    section = tube.section
     if fluid.kind == "inside":
-        if section_properties(section, structure.material.poisson_ratio or 0.0).inner_area <= 0.0:
+        if section_properties(section, tube.material.poisson_ratio or 0.0).inner_area <= 0.0:
             yield Problem(
                 f"{place}.kind",
                 f"needs a hollow section, and a section of kind {section.kind} is solid: leave it"

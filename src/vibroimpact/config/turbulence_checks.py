@@ -4,46 +4,41 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
 from vibroimpact.geometry.centreline import Centreline
 from vibroimpact.geometry.sections import outer_width
 
-from .excitation import Excitation
-from .geometry_checks import Tube, centreline_of, ends_off_the_tube
+from .geometry_checks import ends_off_the_tube
 from .key_problem import Problem, Problems
-from .structure import Structure
-from .turbulence import Ends
+from .stage_settings import ConfigPart
 
 LEAST_SINE = 0.05  # of the angle between force and tube: 3 degrees
 ALONG_TUBE = 2000  # places at which the angle is looked at
 TOLERANCE = 1e-9
 
 
-def needs_a_tube(structure: Structure, excitation: Excitation) -> Problems:
+def needs_a_tube(other: ConfigPart, turbulence: ConfigPart) -> Problems:
     """Yield a problem: turbulence acts along a tube, and this structure is none."""
-    if excitation.kind == "turbulence":
-        yield Problem(
-            "excitation.kind",
-            f"acts along a tube, structure.kind is {structure.kind}: use band_limited",
-        )
+    yield Problem(
+        "excitation.kind", f"acts along a tube, structure.kind is {other.kind}: use band_limited"
+    )
 
 
-def stretches(structure: Tube, excitation: Excitation) -> Problems:
-    """Yield a problem unless the stretches of turbulence are on the tube and do not overlap."""
-    if excitation.kind == "turbulence":
-        yield from stretches_of_flow(structure, excitation.stretches, "excitation")
+def field(line: Centreline, turbulence: ConfigPart) -> Problems:
+    """Yield a problem unless the stretches of turbulence are on the tube and do not overlap, and
+    its direction is across the tube wherever it acts.
+    """
+    yield from field_of_section(line, turbulence, "excitation")
 
 
-def stretches_of_flow(structure: Tube, given: Sequence[Any], section: str) -> Problems:
-    """Yield a problem unless stretches of a section are on the tube and do not overlap."""
-    line = centreline_of(structure)
-    if line is None:
-        return
+def field_of_section(line: Centreline, flow: ConfigPart, section: str) -> Problems:
+    """Yield a problem unless the stretches of a section are on the tube and do not overlap, and its
+    direction is across the tube wherever it acts.
+    """
     taken = []
-    for index, stretch in enumerate(given):
+    for index, stretch in enumerate(flow.stretches):
         place = f"{section}.stretches[{index}]"
         off = [*ends_off_the_tube(line, place, stretch)]
         yield from off
@@ -58,28 +53,20 @@ def stretches_of_flow(structure: Tube, given: Sequence[Any], section: str) -> Pr
             yield Problem(
                 f"{section}.stretches[{other}]",
                 f"overlaps stretches[{one}]: let one end at the start of the other",
-                list(given[other].from_m),
+                list(flow.stretches[other].from_m),
             )
+    acting = [(begin, end) for begin, end, _ in taken]
+    yield from _across(line, acting if flow.stretches else [(0.0, line.length)], flow, section)
 
 
-def direction(structure: Tube, excitation: Excitation) -> Problems:
-    """Yield a problem unless the direction of turbulence is across the tube wherever it acts."""
-    if excitation.kind == "turbulence":
-        yield from direction_of_flow(structure, excitation, "excitation")
-
-
-def direction_of_flow(structure: Tube, flow: Any, section: str) -> Problems:
-    """Yield a problem unless the direction of a section is across the tube wherever it acts."""
-    line = centreline_of(structure)
-    if line is None:
-        return
-    acting = [
-        _ends(line, stretch)
-        for stretch in flow.stretches
-        if not any(ends_off_the_tube(line, "", stretch))
-    ]
+def _across(
+    line: Centreline, acting: Sequence[tuple[float, float]], flow: ConfigPart, section: str
+) -> Problems:
+    """Yield a problem for the first place between the arc lengths `acting` at which the direction
+    of a section is along the tube.
+    """
     along = np.asarray(flow.direction) / np.linalg.norm(flow.direction)
-    for begin, end in acting if flow.stretches else [(0.0, line.length)]:
+    for begin, end in acting:
         places = np.linspace(begin, end, ALONG_TUBE)
         sines = [np.linalg.norm(np.cross(line.direction(place), along)) for place in places]
         if min(sines) < LEAST_SINE:
@@ -92,36 +79,31 @@ def direction_of_flow(structure: Tube, flow: Any, section: str) -> Problems:
             return
 
 
-def _ends(line: Centreline, stretch: Ends) -> tuple[float, float]:
+def _ends(line: Centreline, stretch: ConfigPart) -> tuple[float, float]:
     """Return the arc lengths in m of the ends of a stretch, ascending."""
     begin, end = sorted(line.locate(at, "stretch") for at in (stretch.from_m, stretch.to_m))
     return begin, end
 
 
-def band(excitation: Excitation) -> Problems:
+def band(turbulence: ConfigPart) -> Problems:
     """Yield a problem unless the band of turbulence is above 0."""
-    if excitation.kind != "turbulence":
-        return
-    low, high = excitation.band_Hz
-    if low == 0.0:
+    if turbulence.band_Hz[0] == 0.0:
         yield Problem("excitation.band_Hz", "begins at 0: give a lower end above 0 Hz")
 
 
-def points_of_spectrum(structure: Tube, excitation: Excitation) -> Problems:
+def points_of_spectrum(tube: ConfigPart, turbulence: ConfigPart) -> Problems:
     """Yield a problem unless the points of a spectrum are ascending pairs that cover the band."""
-    if excitation.kind != "turbulence":
-        return
-    spectrum, low_high = excitation.spectrum, excitation.band_Hz
+    spectrum = turbulence.spectrum
     if spectrum.kind == "table":
         key, places, values = "frequency_Hz", spectrum.frequency_Hz, spectrum.psd_N2_per_m2_Hz
         scale = 1.0
     elif spectrum.kind == "reduced_table":
         key, places, values = "reduced_frequency", spectrum.reduced_frequency, spectrum.reduced_psd
-        scale = outer_width(structure.section) / spectrum.velocity_m_per_s
+        scale = outer_width(tube.section) / spectrum.velocity_m_per_s
     else:
         return
     yield from _points(f"excitation.spectrum.{key}", places, values)
-    low, high = (scale * end for end in low_high)
+    low, high = (scale * end for end in turbulence.band_Hz)
     if places[0] > low * (1 + TOLERANCE) or places[-1] < high * (1 - TOLERANCE):
         yield Problem(
             f"excitation.spectrum.{key}",
