@@ -9,14 +9,9 @@ import pytest
 import yaml
 from pydantic import TypeAdapter
 
-from vibroimpact.config.declared_keys import (
-    declared_sections,
-    examples_of,
-    meaning_of,
-    unit_of,
-)
+from vibroimpact.config.declared_keys import examples_of, meaning_of, unit_of
 from vibroimpact.config.json_schema import json_schema
-from vibroimpact.config.key_reference import markdown
+from vibroimpact.config.key_reference import declared_sections, markdown
 from vibroimpact.config.measured_structure import MeasuredStructure
 from vibroimpact.config.problems import members
 from vibroimpact.config.quantities import Section

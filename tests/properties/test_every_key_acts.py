@@ -22,8 +22,8 @@ from tests.properties.full_configurations import (
     SECTIONS,
     changed,
 )
-from vibroimpact.config.declared_keys import declared_sections
 from vibroimpact.config.idle_keys import idle_keys
+from vibroimpact.config.key_reference import declared_sections
 from vibroimpact.config.problems import ConfigError
 from vibroimpact.config.reading import check_config
 from vibroimpact.config.stage_keys import MODEL, STAGE_KEYS, select

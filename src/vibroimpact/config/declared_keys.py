@@ -1,9 +1,8 @@
-"""The declared keys of the configuration, section by section, as the key reference prints them."""
+"""The facts that the declaration of a key states, in words."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from dataclasses import dataclass
 from types import NoneType
 from typing import Annotated, Any, Literal, get_args, get_origin
@@ -11,9 +10,7 @@ from typing import Annotated, Any, Literal, get_args, get_origin
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
-from .measured_structure import MeasuredStructure
 from .quantities import Length, Pattern, Range, Section, Unit
-from .schema import Config
 
 # Ending of a key -> its unit.
 UNITS = {
@@ -63,50 +60,10 @@ class DeclaredKey:
     sections: tuple[type[Section], ...]
 
 
-@dataclass(frozen=True)
-class DeclaredSection:
-    """A section at a place of the configuration.
-
-    place: dotted key, "" for the top level; `[]` follows a key that holds a list of sections.
-    kind: the value of `kind` that selects it, None if there is no choice.
-    meaning: its description.
-    """
-
-    place: str
-    kind: str | None
-    meaning: str
-    keys: tuple[DeclaredKey, ...]
-
-
-def declared_sections() -> list[DeclaredSection]:
-    """Return every section of the configuration, from the top level down, each place once."""
-    return list(dict.fromkeys(_sections(Config, "")))
-
-
-def declared_measured_structure() -> DeclaredSection:
-    """Return the section of a file that states a structure to be identified from its campaign."""
-    return next(_sections(MeasuredStructure, "model.structure"))
-
-
-def _sections(section: type[Section], place: str) -> Iterator[DeclaredSection]:
-    """Yield a section, then those inside it."""
-    keys = tuple(declared(name, field) for name, field in section.model_fields.items())
-    yield DeclaredSection(place, kind_of(section), meaning_of(section), keys)
-    for key in keys:
-        inside = place_of(place, key.name) + ("[]" if key.holds.startswith("list") else "")
-        for inner in key.sections:
-            yield from _sections(inner, inside)
-
-
 def meaning_of(section: type[Section]) -> str:
     """Return the docstring of a section, each paragraph in one line."""
     paragraphs = (section.__doc__ or "").split("\n\n")
     return "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)
-
-
-def place_of(section: str, key: str) -> str:
-    """Return the dotted place of a key of a section."""
-    return f"{section}.{key}" if section else key
 
 
 def unit_of(name: str, field: FieldInfo) -> str:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import groupby
 
-from .declared_keys import (
-    DeclaredKey,
-    DeclaredSection,
-    declared_measured_structure,
-    declared_sections,
-    place_of,
-)
+from .declared_keys import DeclaredKey, declared, kind_of, meaning_of
+from .measured_structure import MeasuredStructure
+from .quantities import Section
+from .schema import Config
 
 INTRODUCTION = """\
 # Configuration keys
@@ -25,6 +24,41 @@ Write numbers in scientific notation as `4.0e+6`, with point and sign.
 COLUMNS = ("Key", "Type", "Unit", "Range", "Default", "Meaning", "Example")
 
 
+@dataclass(frozen=True)
+class DeclaredSection:
+    """A section at a place of the configuration.
+
+    place: dotted key, "" for the top level; `[]` follows a key that holds a list of sections.
+    kind: the value of `kind` that selects it, None if there is no choice.
+    meaning: its description.
+    """
+
+    place: str
+    kind: str | None
+    meaning: str
+    keys: tuple[DeclaredKey, ...]
+
+
+def declared_sections() -> list[DeclaredSection]:
+    """Return every section of the configuration, from the top level down, each place once."""
+    return list(dict.fromkeys(_sections(Config, "")))
+
+
+def _sections(section: type[Section], place: str) -> Iterator[DeclaredSection]:
+    """Yield a section, then those inside it."""
+    keys = tuple(declared(name, field) for name, field in section.model_fields.items())
+    yield DeclaredSection(place, kind_of(section), meaning_of(section), keys)
+    for key in keys:
+        inside = place_of(place, key.name) + ("[]" if key.holds.startswith("list") else "")
+        for inner in key.sections:
+            yield from _sections(inner, inside)
+
+
+def place_of(section: str, key: str) -> str:
+    """Return the dotted place of a key of a section."""
+    return f"{section}.{key}" if section else key
+
+
 def markdown() -> str:
     """Return the reference: one heading and table per section, one anchor per key.
 
@@ -34,7 +68,8 @@ def markdown() -> str:
     parts = [INTRODUCTION]
     for place, sections in groupby(_by_place(), key=lambda section: section.place):
         parts += _at_place(place, list(sections))
-    measured = declared_measured_structure()
+    # Of a file that states a structure to be identified from its campaign.
+    measured = next(_sections(MeasuredStructure, "model.structure"))
     parts += [
         f'<a id="{anchor(measured)}"></a>\n\n## `structure` without `modes`\n',
         "The only section of the file that `--config model=FILE` gives for a campaign.\n",

@@ -14,7 +14,6 @@ from pydantic.fields import FieldInfo
 from .declared_keys import declared, kind_of, members, sections_in
 from .key_problem import near_or_known
 from .quantities import NOT_GIVEN, Section
-from .schema import Config
 
 UNKNOWN = "extra_forbidden"
 PLAIN_WORDS = {
@@ -43,12 +42,12 @@ class ConfigError(Exception):
         that need a whole one.
     """
 
-    def __init__(self, problems: list[str], mended: Config | None = None):
+    def __init__(self, problems: list[str], mended: Any = None):
         super().__init__("\n".join(problems))
         self.problems, self.mended = problems, mended
 
 
-def sentence(error: Mapping[str, Any], data: Any, whole: type[Section] = Config) -> str:
+def sentence(error: Mapping[str, Any], data: Any, whole: type[Section]) -> str:
     """Return "place = value rule: remedy" for one pydantic error of the mapping `data`.
 
     whole: the section that it states.
@@ -119,9 +118,9 @@ def _kinds(sections: tuple[type[Section], ...]) -> str:
     return ", ".join(kind for section in sections if (kind := kind_of(section)))
 
 
-def path_in(location: tuple, data: Any) -> list:
+def path_in(location: tuple, data: Any, whole: type[Section]) -> list:
     """Return the path of keys and indices that a pydantic location means in `data`."""
-    return _resolve(location, data).path
+    return _resolve(location, data, whole).path
 
 
 def _place(path: list) -> str:
@@ -153,7 +152,7 @@ def _holds(data: Any, part: Any) -> bool:
     return isinstance(data, dict) and part in data
 
 
-def _resolve(location: tuple, data: Any, whole: type[Section] = Config) -> _Place:
+def _resolve(location: tuple, data: Any, whole: type[Section]) -> _Place:
     """Return the place that a pydantic location means in `data`.
 
     Pydantic's location also names the member of a union. Such a part is not a key of the data and

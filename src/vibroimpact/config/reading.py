@@ -62,7 +62,7 @@ def check_config(data: dict[str, Any], source: str) -> Config:
         except ValidationError as error:
             errors = [each for each in error.errors(include_url=False) if not follows(each)]
             sections = _valid_sections(read, {each["loc"][0] for each in errors})
-        problems += [sentence(each, read) for each in errors]
+        problems += [sentence(each, read, Config) for each in errors]
         mended = _mended(read, errors)
     between = cross_problems(sections)
     problems += [f"{each.place} = {shown(each.value)} {each.text}" for each in between]
@@ -91,7 +91,7 @@ def _mended(data: dict[str, Any], errors: Sequence[Mapping[str, Any]]) -> dict[s
     """
     copied, mended = copy.deepcopy(data), False
     for error in errors:
-        path, words = path_in(error["loc"], data), error.get("ctx", {})
+        path, words = path_in(error["loc"], data, Config), error.get("ctx", {})
         if error["type"] == "union_tag_invalid":
             path.append("kind")
         level: Any = copied
