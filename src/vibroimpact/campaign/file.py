@@ -50,36 +50,11 @@ from numpy.typing import ArrayLike
 from vibroimpact.io.records import read_given_dataset, write_record
 from vibroimpact.io.units import UnitError, si_factor
 
-from .contract import NEEDED, OPTIONAL, SERIES, contract_problems
+from .contract import ABOUT, DIMENSIONS, REQUIRED, SERIES, contract_problems
 from .force_kinds import BASE, FORCE, load_unit, unit_kinds
 from .stated_values import KINDS as KINDS
 from .stated_values import Kind as Kind
 
-# The attributes units, if the file does not state them, and long_name.
-ABOUT = {
-    "force": ("", "excitation force of the record"),
-    "response": ("", "response of the record, in the unit of its channel"),
-    "channel_units": ("", "unit of the channel"),
-    "channel_kind": ("", "quantity that the channel measures"),
-    "channel_name": ("", "name of the channel"),
-    "channel_point": ("m", "position of the channel"),
-    "channel_direction": ("1", "unit vector of the positive sense of the channel"),
-    "force_channel_name": ("", "name of the force channel"),
-    "force_channel_units": ("", "unit of the force channel"),
-    "force_channel_kind": ("", "what the force channel measures: a force, or the base"),
-    "force_channel_point": ("m", "position of the force"),
-    "force_channel_direction": ("1", "unit vector of the positive sense of the force"),
-    "gap": ("m", "radial gap of the record"),
-    "record_name": ("", "name of the record"),
-    "load_rms": ("N", "RMS of the force of channel 0 about its mean, over the valid samples"),
-    "repeat": ("1", "number of the record among those of the same load and gap, from 0"),
-    "split": ("", "use of the record: fit or holdout"),
-    "support_gap": ("m", "radial gap of the support"),
-    "voltage": ("V", "voltage of the shaker"),
-    "noise_floor_rms": ("", "RMS of the channel's noise, in its unit"),
-    "valid_samples": ("1", "number of samples of the record that count, from its start"),
-    "time": ("s", "time since the start of the record"),
-}
 # Of the attributes that a file need not state.
 DEFAULTS = {
     "antialias": "",
@@ -172,7 +147,7 @@ def campaign_dataset(
         **_channel_variables("channel", channels),
         **_channel_variables("force_channel", drives),
         **_level_variables(levels),
-        **{name: (OPTIONAL[name], np.asarray(values)) for name, values in (optional or {}).items()},
+        **{name: (DIMENSIONS[name], np.asarray(own)) for name, own in (optional or {}).items()},
     }
     stated = {**DEFAULTS, "antialias": "fir80", **attributes}
     return xr.Dataset(data, attrs={"sampling_frequency": float(sampling_frequency), **stated})
@@ -263,15 +238,13 @@ def opened_campaign(path: str | Path) -> xr.Dataset:
     return decode_texts(read_given_dataset(path))
 
 
-def checked_description(path: str | Path, force_needed: bool = True) -> xr.Dataset:
+def checked_description(path: str | Path) -> xr.Dataset:
     """Return the Dataset of a campaign file that keeps the contract, with zeros for all signals.
 
-    It takes no longer for long records. Raises as read_campaign does, whose arguments it has.
+    It takes no longer for long records. Raises as read_campaign does.
     """
     campaign = decode_texts(read_given_dataset(path, described=SERIES))
-    if not force_needed:
-        campaign = with_no_force(campaign)
-    _require(campaign, path, force_needed)
+    _require(campaign, path)
     return campaign
 
 
@@ -284,8 +257,8 @@ def with_no_force(campaign: xr.Dataset) -> xr.Dataset:
         return campaign
     empty = {
         name: (dims, np.zeros([campaign.sizes.get(dim, 0) for dim in dims]))
-        for name, dims in NEEDED.items()
-        if name.startswith("force")
+        for name, dims in DIMENSIONS.items()
+        if name in REQUIRED and name.startswith("force")
     }
     if "load_rms" not in campaign:
         empty["load_rms"] = (("record",), np.full(campaign.sizes.get("record", 0), np.nan))
@@ -326,48 +299,39 @@ def fill_missing(campaign: xr.Dataset) -> xr.Dataset:
     """
     assumed: list[str] = []
     campaign = _with_real_signals(campaign)
-    new: dict[str, tuple] = {}
     count = campaign.sizes["record"]
+
+    def fill(name: str, told: str, values: Any, **attributes: str) -> None:
+        nonlocal campaign
+        campaign = campaign.assign({name: ("record", values, attributes)})
+        assumed.append(f"{name} is missing: {told}")
+
     if "valid_samples" not in campaign:
         valid = _last_finite(campaign)
         if np.any(valid < campaign.sizes["time"]):
-            new["valid_samples"] = ("record", valid)
-            assumed.append(
-                "valid_samples is missing: the records end with NaN, their last finite samples"
-                f" were taken as the ends {valid.tolist()}"
-            )
-    whole = campaign.assign(new)
+            told = "the records end with NaN, their last finite samples were taken as the ends"
+            fill("valid_samples", f"{told} {valid.tolist()}", valid)
     if "load_rms" not in campaign:
         rate, band = float(campaign.attrs["sampling_frequency"]), band_of(campaign.attrs)
-        found = [load_of(force_signal(whole, record), rate, band) for record in range(count)]
-        new["load_rms"] = ("record", np.array(found), {"units": load_unit(campaign)})
-        assumed.append("load_rms is missing: it was computed from force channel 0")
-    loads = new["load_rms"][1] if "load_rms" in new else campaign["load_rms"].values
+        found = [load_of(force_signal(campaign, record), rate, band) for record in range(count)]
+        told = "it was computed from force channel 0"
+        fill("load_rms", told, np.array(found), units=load_unit(campaign))
     if "repeat" not in campaign:
-        keys = [
-            (f"{load:.2g}", f"{gap:.3g}")
-            for load, gap in zip(loads, campaign["gap"].values, strict=True)
-        ]
-        new["repeat"] = (
-            "record",
-            np.array([keys[:index].count(key) for index, key in enumerate(keys)], np.int64),
-        )
-        assumed.append("repeat is missing: records of the same load and gap were counted")
+        rows = zip(campaign["load_rms"].values, campaign["gap"].values, strict=True)
+        keys = [(f"{load:.2g}", f"{gap:.3g}") for load, gap in rows]
+        repeats = [keys[:index].count(key) for index, key in enumerate(keys)]
+        told = "records of the same load and gap were counted"
+        fill("repeat", told, np.array(repeats, np.int64))
     if "split" not in campaign:
-        new["split"] = ("record", np.array(["fit"] * count, dtype=object))
-        assumed.append(
-            "split is missing: all records are fitted, so that nothing is left to verify on: mark"
-            " one as holdout"
+        fill(
+            "split",
+            "all records are fitted, so that nothing is left to verify on: mark one as holdout",
+            np.array(["fit"] * count, dtype=object),
         )
     if "record_name" not in campaign:
-        new["record_name"] = (
-            "record",
-            np.array([f"record {index}" for index in range(count)], dtype=object),
-        )
-        assumed.append("record_name is missing: records were numbered")
-    return campaign.assign(new).assign_attrs(
-        {**DEFAULTS, **campaign.attrs, "assumed": "\n".join(assumed)}
-    )
+        numbered = [f"record {index}" for index in range(count)]
+        fill("record_name", "records were numbered", np.array(numbered, dtype=object))
+    return campaign.assign_attrs({**DEFAULTS, **campaign.attrs, "assumed": "\n".join(assumed)})
 
 
 def _with_real_signals(campaign: xr.Dataset) -> xr.Dataset:

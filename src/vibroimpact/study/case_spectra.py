@@ -43,6 +43,7 @@ COORDINATES = {
         "long_name": "frequency of the segment spectra along the shape line",
     },
 }
+SERIES = ("displacement", "acceleration", "line_displacement")  # of a record, that spectra are of
 PARTS = {"re": "real part", "im": "imaginary part"}
 
 
@@ -178,9 +179,7 @@ def case_spectra(config: Any, record: xr.Dataset) -> xr.Dataset:
         for name, (dims, dtype, _) in spectra.parts.items()
     }
     spectra.write = lambda name, index, values: arrays[name].__setitem__(index, values)
-    spectra.put(
-        *(record[name].values for name in ("displacement", "acceleration", "line_displacement"))
-    )
+    spectra.put(*(record[name].values for name in SERIES))
     spectra.finish()
     data = {
         name: (dims, arrays[name], attributes)

@@ -145,10 +145,7 @@ def nearest_loads(grid: Any, wanted: Sequence[float]) -> list[float]:
 
 def all_cases(grid: Any) -> list[Case]:
     """Return every Case of config.grid, ordered by load, then gap, then seed."""
-    return [
-        Case(load, float(gap), seed)
-        for load, gap, seed in product(load_values(grid), grid.gap_m, range(grid.seeds))
-    ]
+    return [case for load in load_values(grid) for case in cases_of_load(grid, load)]
 
 
 def cases_of_load(grid: Any, load_rms_N: float) -> list[Case]:

@@ -23,15 +23,15 @@ from vibroimpact.flow.limit_cycle import ModelInFlow
 from vibroimpact.flow.stability import NoFlow
 from vibroimpact.geometry.sections import outer_width
 from vibroimpact.identify.secant import secant_support
-from vibroimpact.integration.batch import BatchResult, Schedule, integrate_batch
+from vibroimpact.integration.batch import BatchResult, integrate_batch
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.integration.preload import seated
 
 from .cases import Case, load_values
-from .flow_turbulence import at_velocity, drive_of_lanes
+from .flow_turbulence import at_velocity
 from .in_process import reduced_model
-from .simulation import imperfection, record_dataset, seed_forces
+from .simulation import drive_of_lanes, imperfection, record_dataset, schedule_of, seed_forces
 
 STARTS = {"small": 0.0, "large": 3.0}  # gaps that the lowest mode would reach without stops
 ONSET = 1.25  # times the response without flow: beyond the scatter of a record, 7 to 14 %
@@ -157,7 +157,11 @@ def flow_sweep(config: Config) -> FlowSweep:
         tubes = _equivalents(tube, [pair for pair in batches if not pair[0].coupled])
         runs, equivalents = runs + own_runs, equivalents + tubes
         onsets.append(_onset(tube, own_runs, tubes))
-    cycles = tuple(own for gap in config.grid.gap_m for own in _cycles(tube, gap))
+    cycles = tuple(
+        Cycle(gap, amplitude, tube.limit_cycle(gap, amplitude))
+        for gap in config.grid.gap_m
+        for amplitude in (gap * AMPLITUDES).tolist()
+    )
     return FlowSweep(tuple(runs), tuple(onsets), tuple(equivalents), cycles)
 
 
@@ -167,14 +171,7 @@ def _runs(
     """Yield (FlowRun, record) of one load, gap, seed and start at each velocity; the turbulence
     alone first.
     """
-    model, step = tube.model, config.integration
-    schedule = Schedule(
-        step.steps_per_second,
-        config.record.sampling_frequency_Hz,
-        step.start_up_s,
-        config.record.duration_s,
-        step.scheme,
-    )
+    model, schedule = tube.model, schedule_of(config)
     channels = model.drive_shapes.shape[1]
     forces, lanes = {}, _lanes(config)
     grid = seed_forces(config, schedule, case.seed, channels)
@@ -195,7 +192,9 @@ def _runs(
             line.restart()
             return integrate_batch(moving, schedule, gaps, offset, drive, line.add, rest, laws)
 
-        result, grown = _bounded(integrate, _laws(tube, batch))
+        rising = model.fluid_laws.velocity / tube.acting
+        laws = [tube.force.laws(rising * velocity * coupled) for velocity, coupled in batch]
+        result, grown = _bounded(integrate, laws)
         for lane, (velocity, coupled) in enumerate(batch):
             force_rms = forces[velocity][1]
             own_case = replace(case, load_rms_N=force_rms)
@@ -250,12 +249,6 @@ def _bounded(integrate: Any, laws: list[FluidLaws]) -> tuple[BatchResult, set[in
             own = laws[error.case]
             still = {name: np.zeros_like(values) for name, values in vars(own).items()}
             laws = [*laws[: error.case], FluidLaws(**still), *laws[error.case + 1 :]]
-
-
-def _laws(tube: ModelInFlow, lanes: Sequence[tuple[float, bool]]) -> list[FluidLaws]:
-    """Return the FluidLaws of the rows of each run of _lanes."""
-    share = tube.model.fluid_laws.velocity / tube.acting
-    return [tube.force.laws(share * velocity * coupled) for velocity, coupled in lanes]
 
 
 def _push(model: Any, amplitude: float) -> np.ndarray:
@@ -339,14 +332,11 @@ def onset_of(runs: Sequence[FlowRun]) -> float:
     """
 
     def median(coupled: bool) -> dict[float, float]:
-        own = [run for run in runs if run.coupled == coupled]
-        velocities = sorted({run.velocity_m_per_s for run in own})
-        return {
-            velocity: float(
-                np.median([run.rms_m for run in own if run.velocity_m_per_s == velocity])
-            )
-            for velocity in velocities
-        }
+        found: dict[float, list[float]] = {}
+        for run in sorted(runs, key=lambda run: run.velocity_m_per_s):
+            if run.coupled == coupled:
+                found.setdefault(run.velocity_m_per_s, []).append(run.rms_m)
+        return {velocity: float(np.median(rms)) for velocity, rms in found.items()}
 
     alone, moved = median(False), median(True)
     velocities = np.array([0.0, *moved])
@@ -360,9 +350,3 @@ def onset_of(runs: Sequence[FlowRun]) -> float:
         return float(velocities[last])
     levels = np.log(ratio[last - 1 : last + 1])
     return float(np.interp(np.log(ONSET), levels, velocities[last - 1 : last + 1]))
-
-
-def _cycles(tube: ModelInFlow, gap: float) -> Iterator[Cycle]:
-    """Yield the limit cycles at a gap in m."""
-    for amplitude in gap * AMPLITUDES:
-        yield Cycle(gap, float(amplitude), tube.limit_cycle(gap, float(amplitude)))

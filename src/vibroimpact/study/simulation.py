@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import nullcontext
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -59,13 +60,7 @@ def simulate_cases(
     if config.record.every_step:
         yield from trace_cases(config, model, cases)
         return
-    schedule = Schedule(
-        config.integration.steps_per_second,
-        config.record.sampling_frequency_Hz,
-        config.integration.start_up_s,
-        config.record.duration_s,
-        config.integration.scheme,
-    )
+    schedule = schedule_of(config)
     with stopwatch("force"):
         channels = model.drive_shapes.shape[1]
         forces = {
@@ -75,11 +70,18 @@ def simulate_cases(
     for first in range(0, len(cases), LANES):
         batch = cases[first : first + LANES]
         lanes = _integrated(
-            config, model, schedule, batch, drive_of(batch, forces, stopwatch), writer
+            config, model, schedule, batch, _drive(batch, forces, stopwatch), writer
         )
         stopwatch.add(lanes.stopwatch)
         for lane, case in enumerate(batch):
             yield case, record_dataset(config, model, schedule, lanes, lane, case)
+
+
+def schedule_of(config: Any) -> Schedule:
+    """Return the Schedule that a configuration's integration and record state."""
+    step, record = config.integration, config.record
+    rates = step.steps_per_second, record.sampling_frequency_Hz
+    return Schedule(*rates, step.start_up_s, record.duration_s, step.scheme)
 
 
 def _integrated(config, model, schedule, batch, drive, writer) -> BatchResult:
@@ -138,24 +140,25 @@ def imperfection(config: Any, model: ModalModel, case: Case) -> np.ndarray:
     return draw * (config.integration.imperfection * case.gap_m)
 
 
-def drive_of(
-    batch: list[Case], forces: dict[int, list[ForceStream]], stopwatch: Stopwatch
-) -> Callable:
+def _drive(batch, forces, stopwatch):
     """Return the Drive of a batch: the forces of each case's seed, {seed: its channels}, times its
     load.
     """
+    drive = drive_of_lanes([(forces[case.seed], case.load_rms_N) for case in batch])
+    return partial(stopwatch.time, "force", drive)
+
+
+def drive_of_lanes(lanes: Sequence[tuple[list[ForceStream], float]]) -> Callable:
+    """Return the Drive of runs side by side, each with the channels of its force and its load."""
 
     def drive(first: int, count: int) -> np.ndarray:
-        with stopwatch("force"):
-            unit = {
-                seed: [stream.values(first, count) for stream in forces[seed]]
-                for seed in {case.seed for case in batch}
-            }
-            channels = len(forces[batch[0].seed])
-            out = np.empty((count, channels, len(batch)))
-            for lane, case in enumerate(batch):
-                for channel, values in enumerate(unit[case.seed]):
-                    np.multiply(values, case.load_rms_N, out=out[:, channel, lane])
+        out = np.empty((count, len(lanes[0][0]), len(lanes)))
+        made: dict[int, list[np.ndarray]] = {}
+        for lane, (streams, load) in enumerate(lanes):
+            if id(streams) not in made:
+                made[id(streams)] = [stream.values(first, count) for stream in streams]
+            for channel, values in enumerate(made[id(streams)]):
+                np.multiply(values, load, out=out[:, channel, lane])
         return out
 
     return drive

@@ -16,11 +16,9 @@ from vibroimpact.io.records import RecordFile
 from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.reduction.modal_model import ModalModel
 
-from .case_spectra import CaseSpectra
+from .case_spectra import SERIES, CaseSpectra
 from .cases import Case
 from .simulation import case_attributes
-
-READ = ("displacement", "acceleration", "line_displacement")
 
 
 def spectra_writer(
@@ -55,9 +53,8 @@ def spectra_writer(
 
             def put(first: int, series: dict[str, np.ndarray]) -> None:
                 with stopwatch("spectra"):
-                    for spectra, *values in zip(
-                        spectra_of_batch, *(series[name] for name in READ), strict=True
-                    ):
+                    pieces = (series[name] for name in SERIES)
+                    for spectra, *values in zip(spectra_of_batch, *pieces, strict=True):
                         spectra.put(*values)
 
             yield put

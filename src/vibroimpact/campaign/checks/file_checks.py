@@ -62,25 +62,6 @@ from .stated import (
 )
 
 COLUMNS = ("check", "level", "record", "channel", "message")
-CHECKS = (
-    "contract",
-    "units",
-    "sizes",
-    "time",
-    "gaps in time",
-    "spikes",
-    "clipping",
-    "drop-outs",
-    "load_rms",
-    "coherence",
-    "delay",
-    "swapped channels",
-    "between records",
-    "directions",
-    "stationarity",
-    "record length",
-    "content",
-)
 NOT_CHECKED = "not checked"
 BESIDE = {"base motion": "load_rms"}  # a check of some campaigns alone, and the one that it follows
 # A warning of these excludes its signal from every comparison.
@@ -88,6 +69,7 @@ EXCLUDING_CHECKS = ("units", "gaps in time", "spikes", "clipping", "drop-outs", 
 LEVELS_APART = 1.05
 BANDS_PER_DECADE = 24 / np.log10(200.0 / 5.0)
 NOT_IMPORTED = " A campaign is netCDF: snakemake import_campaign makes one of UFF, MATLAB or CSV."
+SEVERAL = "with several forces, each may drive motion that does not follow the first"
 FEWEST_PERIODS, GOOD_AVERAGES = 10.0, 6.0
 
 
@@ -142,7 +124,10 @@ def check_campaign(campaign: xr.Dataset) -> list[dict]:
     usable = usable_signals(campaign, rows)
     rows += base_motion_rows(measured)
     measured = relative_to_base(measured)
-    spectra, record = _lowest_spectra(measured)
+    record = measured.lowest()
+    spectra = "no record has a force and a response without holes"
+    if record is not None:
+        spectra = transfer_or_reason(measured, record)
     rows += [
         *load_rows(campaign, measured),
         *_linear(measured, spectra, record),
@@ -173,7 +158,7 @@ def _without_force(campaign: xr.Dataset) -> list[dict]:
     ]
 
 
-PASSED = {
+PASSED = {  # in the order of the rows
     "contract": "The file holds every variable of the contract.",
     "units": "Every channel has a unit of its kind.",
     "sizes": "Gaps and places are as large as those of a structure in metres.",
@@ -192,6 +177,7 @@ PASSED = {
     "record length": "Every record is long enough for the lowest band that is looked at.",
     "content": "There are a force, a response and two levels or more.",
 }
+CHECKS = tuple(PASSED)
 
 
 def _not_checked(check: str, reason: str) -> dict:
@@ -232,20 +218,20 @@ def _signal_faults(measured):
     """Yield rows of faults of single signals, record by record."""
     for record, name in enumerate(measured.records):
         period = measured.period_samples or common_period(list(measured.force[record][:1]))
-        forces = [
-            (measured.forces[index], signal) for index, signal in enumerate(measured.force[record])
-        ]
-        responses = [
-            (measured.channels[index], signal)
-            for index, signal in enumerate(measured.response[record])
-        ]
-        for place, (channel, signal) in enumerate(forces + responses):
-            driving = place == 0 and forces
+        forces = zip(measured.forces, measured.force[record], strict=True)
+        responses = zip(measured.channels, measured.response[record], strict=True)
+        for place, (channel, signal) in enumerate([*forces, *responses]):
+            driving = place == 0 and measured.forces
             what = "The record is left out" if driving else "It is left out of this record"
             yield from _faults_of(signal, period, measured, name, channel, what)
 
 
 def _faults_of(signal, period, measured, record, channel, what):
+    """Yield rows of the faults of a signal; those that hide others alone."""
+
+    def fault(check, message):
+        return warning(check, message, record, channel)
+
     holes = missing_samples(signal)
     if signal.size == 0 or holes:
         count, first = holes or (0, 0)
@@ -256,55 +242,39 @@ def _faults_of(signal, period, measured, record, channel, what):
             if signal.size
             else f"Record {record} has no valid sample."
         )
-        yield warning("gaps in time", message, record, channel)
+        yield fault("gaps in time", message)
         return
     # a support that is not touched exerts nothing, for as long as that lasts
     presses = (channel, "contact_force") in zip(measured.channels, measured.kinds, strict=True)
     if not signal.any() and not presses:
-        yield warning(
-            "drop-outs", f"{channel} is zero throughout record {record}. {what}.", record, channel
-        )
+        yield fault("drop-outs", f"{channel} is zero throughout record {record}. {what}.")
         return
     at = spike(signal)
     if at is not None:
-        yield warning(
+        yield fault(
             "spikes",
             f"{channel} has a single sample of {signal[at]:.4g} (SI) at {at / measured.rate:.3f} s"
             f" in record {record}, alone beyond all others: a fault of the transmission. {what}:"
             " cut it out with from_s and to_s, or record again.",
-            record,
-            channel,
         )
         return
     # Only the last period of a periodic signal: every peak recurs in each period.
     share = clipped_share(signal[-period:] if 0 < period < signal.size else signal)
     if share is not None:
-        yield warning(
+        yield fault(
             "clipping",
             f"{channel} has flat tops near {np.abs(signal - np.median(signal)).max():.4g} (SI) in"
             f" record {record}, {100 * share:.2g} % of the samples: the range of the amplifier was"
             f" too small. {what}.",
-            record,
-            channel,
         )
     still = presses or (channel in measured.forces and blows(signal) > 0)
     lost = None if still else drop_out(signal, measured.rate, measured.starts_at_rest)
     if lost is not None:
-        yield warning(
+        yield fault(
             "drop-outs",
             f"{channel} is held or vanishes at {lost[0]:.2f} s for {lost[1]:.3f} s in record"
             f" {record}. {what}.",
-            record,
-            channel,
         )
-
-
-def _lowest_spectra(measured):
-    """Return (Transfer or the reason why there is none, record of the lowest load or None)."""
-    record = measured.lowest()
-    if record is None:
-        return "no record has a force and a response without holes", None
-    return transfer_or_reason(measured, record), record
 
 
 def _linear(measured, spectra, record):
@@ -337,27 +307,18 @@ def _linear(measured, spectra, record):
             name,
         )
     apart, common = channel_delays(spectra, measured.kinds, measured.rate, finite)
-    for index, samples in apart.items():
-        yield warning(
-            "delay",
-            f"{measured.channels[index]} {'lags' if samples > 0 else 'leads'} the other channels by"
-            f" {abs(samples):.1f} samples ({abs(samples) / measured.rate * 1e3:.2f} ms) in record"
-            f" {name}.",
-            name,
-            measured.channels[index],
-        )
+    late = [
+        (channel, f"{channel} {'lags' if lag > 0 else 'leads'} the other channels", lag)
+        for channel, lag in ((measured.channels[index], lag) for index, lag in apart.items())
+    ]
     if common is not None:
-        yield warning(
-            "delay",
-            f"All responses {'lag' if common > 0 else 'lead'} {measured.forces[0]} by"
-            f" {abs(common):.1f} samples ({abs(common) / measured.rate * 1e3:.2f} ms) in record"
-            f" {name}.",
-            name,
-            measured.forces[0],
-        )
+        force = measured.forces[0]
+        late.append((force, f"All responses {'lag' if common > 0 else 'lead'} {force}", common))
+    for channel, told, lag in late:
+        by = f"by {abs(lag):.1f} samples ({abs(lag) / measured.rate * 1e3:.2f} ms)"
+        yield warning("delay", f"{told} {by} in record {name}.", name, channel)
     if len(measured.forces) > 1:
-        reason = "with several forces, each may drive motion that does not follow the first"
-        yield _not_checked("swapped channels", reason)
+        yield _not_checked("swapped channels", SEVERAL)
     elif len(measured.channels) == 1:
         yield _not_checked("swapped channels", "there is one response")
     else:
@@ -393,8 +354,7 @@ def _between_records(measured):
     """Yield rows of records and channels that are copies, and of those that contradict others."""
     rows = [*copies(measured)]
     if len(measured.forces) > 1:
-        reason = "with several forces, each may drive motion that does not follow the first"
-        yield _not_checked("between records", reason)
+        yield _not_checked("between records", SEVERAL)
     elif len(measured.records) > 1:
         rows += contradictions(measured)
     for record, channel, sentence in rows:
@@ -407,9 +367,8 @@ def _between_records(measured):
 
 
 def _directions(measured):
-    for name, point, direction in zip(
-        measured.channels, measured.points, measured.directions, strict=True
-    ):
+    places = zip(measured.channels, measured.points, measured.directions, strict=True)
+    for name, point, direction in places:
         length = float(np.linalg.norm(direction))
         if not abs(length - 1.0) < 0.01:
             yield warning(
@@ -424,11 +383,8 @@ def _directions(measured):
                 channel=name,
             )
     if not np.isfinite(alignment(measured)).any():
-        yield warning(
-            "directions",
-            f"The direction of {measured.forces[0]} is not known.",
-            channel=measured.forces[0],
-        )
+        force = measured.forces[0]
+        yield warning("directions", f"The direction of {force} is not known.", channel=force)
 
 
 def _stationarity(measured, usable, spectra):
@@ -439,15 +395,12 @@ def _stationarity(measured, usable, spectra):
     for record, name in enumerate(measured.records):
         if not usable[0][record]:
             continue
-        signals = [(measured.forces[0], measured.force[record][0], True)]
-        signals += [
-            (channel, measured.response[record][index], usable[1][record, index])
-            for index, channel in enumerate(measured.channels)
-        ]
-        for channel, signal, kept in signals:
-            trend = (
-                level_trend(signal, measured.rate, band, measured.starts_at_rest) if kept else None
-            )
+        responses = zip(
+            measured.channels, measured.response[record], usable[1][record], strict=True
+        )
+        signals = [(measured.forces[0], measured.force[record][0], True), *responses]
+        for channel, signal in ((own[0], own[1]) for own in signals if own[2]):
+            trend = level_trend(signal, measured.rate, band, measured.starts_at_rest)
             made = made or trend is not None
             if is_drifting(trend):
                 yield warning(
@@ -498,28 +451,20 @@ def _content(measured, usable):
     """Yield rows of the least that a verdict needs, after the other checks excluded signals."""
     force, response = usable
     whole = force & response.any(axis=1)
+    lacking = None
     if not force.any() or measured.force_unit_faults.get(0):
-        yield check_row(
-            "content",
-            "refuse",
-            f"No record has a usable force {measured.forces[0]}: a verdict needs one measured"
-            " force.",
+        lacking = (
+            f"record has a usable force {measured.forces[0]}: a verdict needs one measured force"
         )
-        return
-    if not whole.any():
-        yield check_row(
-            "content",
-            "refuse",
-            "No response is usable together with a usable force: a verdict needs one response.",
-        )
+    elif not whole.any():
+        lacking = "response is usable together with a usable force: a verdict needs one response"
+    if lacking is not None:
+        yield check_row("content", "refuse", f"No {lacking}.")
         return
     loads = measured.load_rms[whole]
     if not loads.max() > LEVELS_APART * loads.min():
-        yield check_row(
-            "content",
-            "refuse",
-            f"All usable records have the load {loads.max():.4g}: a verdict needs two levels.",
-        )
+        told = f"All usable records have the load {loads.max():.4g}: a verdict needs two levels."
+        yield check_row("content", "refuse", told)
     splits = {measured.splits[record] for record in np.flatnonzero(whole)}
     for split, why in (
         ("fit", "nothing can be fitted"),
