@@ -17,7 +17,7 @@ from vibroimpact.campaign.importing.sidecar import read_sidecar
 from vibroimpact.io.foreign_arrays import ForeignFileError
 from vibroimpact.io.matlab_files import load_matlab
 from vibroimpact.io.records import RecordError, read_hdf5_arrays
-from vibroimpact.io.signal_files.matlab import read_matlab
+from vibroimpact.io.signal_files.array_files import read_matlab
 from vibroimpact.io.signal_files.signals import ImportProblem
 
 RATE, SAMPLES = 512, 512

@@ -39,20 +39,24 @@ def idle_keys(config: Config) -> Iterator[str]:
     yield from _of_outputs(config)
 
 
-def _idle(place: str, section: Section, key: str, why: str, remedy: str = OUT) -> Iterator[str]:
-    """Yield a sentence if a key has another value than its default, and is not 0: that asks for
-    nothing.
+def _idle(place: str, section: Section, keys: str, why: str, remedy: str = OUT) -> Iterator[str]:
+    """Yield a sentence for each of the keys that the section has with another value than its
+    default, and not 0: that asks for nothing.
     """
-    value, field = getattr(section, key), type(section).model_fields[key]
-    if value and not field.is_required() and value != field.get_default():
-        name = f"{place}.{key}".removeprefix(".")
-        yield f"{name} = {shown(value)} has no effect: {why}: {remedy}"
+    fields = type(section).model_fields
+    for key in filter(fields.__contains__, keys.split()):
+        value, field = getattr(section, key), fields[key]
+        if value and not field.is_required() and value != field.get_default():
+            name = f"{place}.{key}".removeprefix(".")
+            yield f"{name} = {shown(value)} has no effect: {why}: {remedy}"
 
 
 def _of_support(place: str, support: Any, on_a_tube: bool) -> Iterator[str]:
-    for key in ("points", "height_m") if not on_a_tube else ("point", "other_point"):
-        kind = "of one contact point, on no tube" if not on_a_tube else "on a tube, at at_m"
-        yield from _idle(place, support, key, f"the support is {kind}")
+    if on_a_tube:
+        yield from _idle(place, support, "point other_point", "the support is on a tube, at at_m")
+    else:
+        why = "the support is of one contact point, on no tube"
+        yield from _idle(place, support, "points height_m", why)
     if support.gap_m is not None or support.preload_N is not None:
         given = "gap_m" if support.gap_m is not None else "preload_N"
         yield from _idle(place, support, "gap_factor", f"{given} is given in place of the gap")
@@ -109,16 +113,14 @@ def _of_structure(config: Config) -> Iterator[str]:
         yield from _idle("structure.mesh", structure.mesh, "elements_per_bend", why)
     if structure.kind not in TUBES:
         line, why = config.record.shape_line, "the structure is no tube"
-        for key in ("points", "direction"):
-            yield from _idle("record.shape_line", line, key, why)
+        yield from _idle("record.shape_line", line, "points direction", why)
     if structure.kind in TUBES:
-        section, why = structure.section, "theory euler_bernoulli has no shear deformation"
-        for key in ("shear_coefficient", "shear_coefficients"):
-            if structure.theory == "euler_bernoulli" and hasattr(section, key):
-                yield from _idle("structure.section", section, key, why)
-        if not structure.fluid and section.kind == "general":
-            why = "there is no fluid"
-            yield from _idle("structure.section", section, "enclosed_area_m2", why)
+        place, section = "structure.section", structure.section
+        if structure.theory == "euler_bernoulli":
+            why = "theory euler_bernoulli has no shear deformation"
+            yield from _idle(place, section, "shear_coefficient shear_coefficients", why)
+        if not structure.fluid:
+            yield from _idle(place, section, "enclosed_area_m2", "there is no fluid")
     if structure.kind == "identified":
         yield from _idle("", config, "damping", "measured modes bring their own")
 
@@ -128,9 +130,10 @@ def _of_motion(config: Config) -> Iterator[str]:
     if getattr(force, "turn_deg", None) == 0.0:
         yield from _idle("excitation", force, "turn_about", "turn_deg is 0")
     if config.initial is not None and getattr(force, "obstacles", "moving") == "moving":
-        for key in ("base_displacement_m", "base_velocity_m_per_s"):
-            why = "obstacles fixed in space (base_motion) alone see the base"
-            yield from _idle("initial", config.initial, key, why)
+        why = "obstacles fixed in space (base_motion) alone see the base"
+        yield from _idle(
+            "initial", config.initial, "base_displacement_m base_velocity_m_per_s", why
+        )
     if not config.supports and not config.elements:
         why = "there are no supports or elements to hold"
         yield from _idle("basis", config.basis, "constrained_modes_to_Hz", why)
@@ -138,16 +141,14 @@ def _of_motion(config: Config) -> Iterator[str]:
 
 def _of_outputs(config: Config) -> Iterator[str]:
     if config.overlay.campaign is not None:
-        for key in ("gap_ratio", "noise", "seed"):
-            yield from _idle("overlay", config.overlay, key, "the campaign is a measured one")
+        why = "the campaign is a measured one"
+        yield from _idle("overlay", config.overlay, "gap_ratio noise seed", why)
     if not config.supports:
         why = "there are no supports, whose offset it is"
         yield from _idle("integration", config.integration, "imperfection", why)
     if config.record.every_step:
         why = "record.every_step records every step instead"
-        for key in ("keep_time_series", "sampling_frequency_Hz"):
-            yield from _idle("record", config.record, key, why)
-        for key in Spectra.model_fields:
-            yield from _idle("spectra", config.spectra, key, why)
+        yield from _idle("record", config.record, "keep_time_series sampling_frequency_Hz", why)
+        yield from _idle("spectra", config.spectra, " ".join(Spectra.model_fields), why)
         why = "runs that keep every step have none"
         yield from _idle("integration", config.integration, "imperfection", why)

@@ -20,6 +20,11 @@ OPENED = {
     "while parsing a flow sequence": ("list", "[", "]"),
     "while parsing a flow mapping": ("block", "{", "}"),
 }
+# What PlainLoader says of itself with the remedy.
+OF_THE_LOADER = (
+    *("holds more than", "nested in more than", "an alias inside", "is a tag", "is ambiguous"),
+    "can not be read",
+)
 # Message of PyYAML -> the fault, and the remedy.
 PLAIN_WORDS = (
     (
@@ -40,12 +45,7 @@ PLAIN_WORDS = (
         "a quote is not closed before the end of the file: close it",
     ),
     ("is given twice", "{problem}: keep one of the two"),
-    ("holds more than", "{problem}"),
-    ("nested in more than", "{problem}"),
-    ("an alias inside", "{problem}"),
-    ("is a tag", "{problem}"),
-    ("is ambiguous", "{problem}"),
-    ("can not be read", "{problem}"),
+    *((told, "{problem}") for told in OF_THE_LOADER),
     ("found unhashable key", "a list or a block as a key: write a text before the colon"),
     ("found undefined alias", "an alias (*name) without its anchor: write &name at its definition"),
     (
@@ -57,6 +57,10 @@ PLAIN_WORDS = (
 ELSE = "check indentation, colons, brackets and quotes there"
 
 
+class _Refused(Exception):
+    """What is wrong with a file, without its name."""
+
+
 def read_yaml(path: str | os.PathLike[str]) -> dict[str, Any]:
     """Return the mapping in a YAML file.
 
@@ -64,83 +68,72 @@ def read_yaml(path: str | os.PathLike[str]) -> dict[str, Any]:
     twice or no keys at all, is larger than a configuration can be (see yaml_loader), or asks for
     templates, which run code. The sentence gives the line and the column if there is one.
     """
-    data = _parsed(path, _text(path, _content(path)))
-    if not isinstance(data, dict):
-        raise ConfigError([f"{path}: holds no keys: write each as `key: value`"])
-    if TEMPLATES in data:
-        raise ConfigError(
-            [f"{path}: {TEMPLATES} would run the content of the file as a program: remove the key"]
-        )
+    try:
+        data = _parsed(_text(_content(path)))
+        if not isinstance(data, dict):
+            raise _Refused("holds no keys: write each as `key: value`")
+        if TEMPLATES in data:
+            raise _Refused(
+                f"{TEMPLATES} would run the content of the file as a program: remove the key"
+            )
+    except _Refused as error:
+        raise ConfigError([f"{path}: {error}"]) from error.__cause__
     return data
 
 
 def _content(path: str | os.PathLike[str]) -> bytes:
-    """Return the bytes of a file. Raises ConfigError."""
+    """Return the bytes of a file. Raises _Refused."""
     if os.path.isdir(path):
-        raise ConfigError([f"{path}: is a folder: give the path of a file in it"])
+        raise _Refused("is a folder: give the path of a file in it")
     if os.path.exists(path) and not os.path.isfile(path):
-        raise ConfigError([f"{path}: is a pipe or a device: save the configuration to a file"])
+        raise _Refused("is a pipe or a device: save the configuration to a file")
     try:
         with open(path, "rb") as file:
             raw = file.read(MOST_BYTES + 1)
     except OSError as error:
-        raise ConfigError(
-            [f"{path}: cannot be read ({error.strerror}): give the path of a text file in YAML"]
-        ) from error
+        told = f"cannot be read ({error.strerror}): give the path of a text file in YAML"
+        raise _Refused(told) from error
     if len(raw) > MOST_BYTES:
-        raise ConfigError(
-            [
-                f"{path}: is larger than {MOST_BYTES // 10**6} MB, which no configuration is: give"
-                " the path of a text file in YAML"
-            ]
+        raise _Refused(
+            f"is larger than {MOST_BYTES // 10**6} MB, which no configuration is: give the path of"
+            " a text file in YAML"
         )
     return raw
 
 
-def _text(path: str | os.PathLike[str], raw: bytes) -> str:
-    """Return the text that bytes of a file are in UTF-8. Raises ConfigError."""
+def _text(raw: bytes) -> str:
+    """Return the text that bytes of a file are in UTF-8. Raises _Refused."""
     if raw.startswith(WIDE_TEXT):
-        raise ConfigError(
-            [f"{path}: is text with 16 or 32 bits per character: save the file as UTF-8"]
-        )
+        raise _Refused("is text with 16 or 32 bits per character: save the file as UTF-8")
     if b"\0" in raw:
-        raise ConfigError(
-            [
-                f"{path}: is a binary file or no text in UTF-8: give a text file in YAML, saved as"
-                " UTF-8"
-            ]
+        raise _Refused(
+            "is a binary file or no text in UTF-8: give a text file in YAML, saved as UTF-8"
         )
     try:
         return raw.decode("utf-8")
     except UnicodeDecodeError as error:
         place = _line_and_column(raw[: error.start].decode("utf-8"))
-        raise ConfigError(
-            [f"{path}: {place}: a character that is not UTF-8: save the file as UTF-8"]
-        ) from error
+        told = f"{place}: a character that is not UTF-8: save the file as UTF-8"
+        raise _Refused(told) from error
 
 
-def _parsed(path: str | os.PathLike[str], text: str) -> Any:
-    """Return the content of a YAML text. Raises ConfigError."""
+def _parsed(text: str) -> Any:
+    """Return the content of a YAML text. Raises _Refused."""
     try:
         loader = PlainLoader(text)
     except ReaderError as error:
         place = _line_and_column(text[: error.position])
-        raise ConfigError(
-            [f"{path}: {place}: a character that YAML does not allow: remove it"]
-        ) from error
+        raise _Refused(f"{place}: a character that YAML does not allow: remove it") from error
     try:
         return loader.get_single_data()
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         place = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
-        raise ConfigError([f"{path}: {place}{_in_plain_words(error)}"]) from error
+        raise _Refused(f"{place}{_in_plain_words(error)}") from error
     except (ValueError, OverflowError) as error:  # an escape such as "\UFFFFFFFF"
-        raise ConfigError(
-            [
-                f"{path}: line {loader.get_mark().line + 1}: an escape that is no character: write"
-                " the character itself"
-            ]
-        ) from error
+        place = f"line {loader.get_mark().line + 1}"
+        told = f"{place}: an escape that is no character: write the character itself"
+        raise _Refused(told) from error
     finally:
         loader.dispose()
 

@@ -6,9 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from vibroimpact.io.foreign_arrays import ForeignFileError, refused_if_damaged
+from vibroimpact.io.signal_files.array_files import read_matlab, read_netcdf
 from vibroimpact.io.signal_files.csv_table import read_csv
-from vibroimpact.io.signal_files.matlab import read_matlab
-from vibroimpact.io.signal_files.netcdf import read_netcdf
 from vibroimpact.io.signal_files.signals import ImportProblem, Signal
 from vibroimpact.io.units import UnitError, si_factor
 

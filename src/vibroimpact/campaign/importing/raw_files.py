@@ -9,9 +9,8 @@ from collections.abc import Collection, Iterable
 from pathlib import Path
 
 from vibroimpact.io.records import MOST_READ
+from vibroimpact.io.signal_files.array_files import read_matlab, read_netcdf
 from vibroimpact.io.signal_files.csv_table import read_csv
-from vibroimpact.io.signal_files.matlab import read_matlab
-from vibroimpact.io.signal_files.netcdf import read_netcdf
 from vibroimpact.io.signal_files.signals import UNREAD, ImportProblem, Signal
 
 from .sidecar import NAME, read_sidecar
