@@ -39,13 +39,11 @@ def base_motion(signals: CampaignSignals) -> list[np.ndarray] | None:
     It is 0 in a channel that measures none of it. None if no force channel is a base
     acceleration.
     """
-    moved = moves_with_base(signals)
     if BASE not in signals.force_kinds:
         return None
+    moved, bases = moves_with_base(signals), np.array(signals.force_kinds) == BASE
     cosines = _unit(signals.directions) @ _unit(signals.force_directions).T
-    cosines[:, [kind != BASE for kind in signals.force_kinds]] = 0.0
-    cosines[~moved] = 0.0
-    cosines = np.nan_to_num(cosines)
+    cosines = np.nan_to_num(np.where(np.outer(moved, bases), cosines, 0.0))
     velocity = np.array(signals.kinds) == "velocity"
     low_Hz = _lowest_Hz(signals) if velocity.any() else 0.0
     motions = []

@@ -77,14 +77,8 @@ def stated_value_problems(campaign: xr.Dataset, sound: set[str]) -> Iterator[str
             yield from _range_problem(name, campaign[name].values, allowed)
     if "valid_samples" in sound:
         samples = campaign.sizes["time"]
-        allowed = Range(
-            1,
-            samples,
-            "",
-            f"count the valid samples of the record from its start, 1 to {samples}",
-            whole=True,
-            unknown=True,
-        )
+        remedy = f"count the valid samples of the record from its start, 1 to {samples}"
+        allowed = Range(1, samples, "", remedy, whole=True, unknown=True)
         yield from _range_problem("valid_samples", campaign["valid_samples"].values, allowed)
     yield from _name_problems(campaign, sound)
     if "force" in sound and "force_channel_units" not in campaign:
@@ -163,49 +157,41 @@ def _name_problems(campaign: xr.Dataset, sound: set[str]) -> Iterator[str]:
 
 def _attribute_problems(campaign: xr.Dataset) -> Iterator[str]:
     """Yield a sentence for every global attribute that can not be used."""
-    attributes = campaign.attrs
+    samples, attributes = campaign.sizes.get("time", 0), campaign.attrs
+    rate = number_of(attributes.get("sampling_frequency", np.nan))
+
+    def wrong(name: str, told: str) -> str:
+        return f"{name} = {_shown(attributes[name])} {told}"
+
     if "sampling_frequency" not in attributes:
         yield "has no attribute sampling_frequency: give it in Hz"
-    elif not 0.0 < number_of(attributes["sampling_frequency"]) <= HIGHEST_RATE_HZ:
-        yield (
-            f"sampling_frequency = {_shown(attributes['sampling_frequency'])} is no sampling"
-            " frequency: write samples per second, in Hz, as a number"
+    elif not 0.0 < rate <= HIGHEST_RATE_HZ:
+        told = "is no sampling frequency: write samples per second, in Hz, as a number"
+        yield wrong("sampling_frequency", told)
+    period = number_of(attributes.get("period_samples", 0))
+    if period != 0.0 and not (SHORTEST_PERIOD <= period <= samples and period.is_integer()):
+        yield wrong(
+            "period_samples",
+            f"is no period: write the samples of a period of the force, {SHORTEST_PERIOD} to"
+            f" {samples}, or 0 if it does not repeat",
         )
-    samples = campaign.sizes.get("time", 0)
-    if "period_samples" in attributes:
-        period = number_of(attributes["period_samples"])
-        if period != 0.0 and not (SHORTEST_PERIOD <= period <= samples and period.is_integer()):
-            yield (
-                f"period_samples = {_shown(attributes['period_samples'])} is no period: write the"
-                f" samples of a period of the force, {SHORTEST_PERIOD} to {samples}, or 0 if it"
-                " does not repeat"
-            )
     if "band_Hz" in attributes:
         low, high = _pair(attributes["band_Hz"])
-        nyquist = 0.5 * number_of(attributes.get("sampling_frequency", np.nan))
-        if not 0.0 <= low < high or high > nyquist:
-            yield (
-                f"band_Hz = {_shown(attributes['band_Hz'])} is no band: write the lowest and the"
-                f" highest frequency in Hz, up to half the sampling frequency, {nyquist:g} Hz"
+        if not 0.0 <= low < high or high > 0.5 * rate:
+            yield wrong(
+                "band_Hz",
+                "is no band: write the lowest and the highest frequency in Hz, up to half the"
+                f" sampling frequency, {0.5 * rate:g} Hz",
             )
-    if "transient_periods" in attributes:
-        transient = number_of(attributes["transient_periods"])
-        if not (0.0 <= transient <= 1.0e6 and transient.is_integer()):
-            yield (
-                f"transient_periods = {_shown(attributes['transient_periods'])} is no number of"
-                " periods: write how many pass before the steady state, from 0"
-            )
+    transient = number_of(attributes.get("transient_periods", 0))
+    if not (0.0 <= transient <= 1.0e6 and transient.is_integer()):
+        told = "is no number of periods: write how many pass before the steady state, from 0"
+        yield wrong("transient_periods", told)
     start_up = attributes.get("start_up", START_UPS[0])
     if not (isinstance(start_up, str) and start_up in START_UPS):
-        yield (
-            f"start_up = {_shown(attributes['start_up'])} is unknown: use one of"
-            f" {', '.join(START_UPS)}"
-        )
+        yield wrong("start_up", f"is unknown: use one of {', '.join(START_UPS)}")
     if not isinstance(attributes.get("antialias", ""), str):
-        yield (
-            f"antialias = {_shown(attributes['antialias'])} is no text: write fir80 or none, or the"
-            " filter of the recorder"
-        )
+        yield wrong("antialias", "is no text: write fir80 or none, or the filter of the recorder")
 
 
 def number_of(value: Any) -> float:

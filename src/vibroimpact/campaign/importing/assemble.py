@@ -17,9 +17,9 @@ from vibroimpact.campaign.file import (
 from vibroimpact.io.signal_files.signals import ImportProblem
 from vibroimpact.io.units import si_factor, si_unit
 
-from .cuts import Cut, cut_records
+from .cuts import cut_records
 from .raw_files import raw_files, read_signals
-from .sensors import Measured, ResolvedSensor, one_rate, read_voltage, resolve_sensors
+from .sensors import Measured, one_rate, read_voltage, resolve_sensors
 from .sidecar import NAME, Drive, Record, Sensor, Sidecar, read_sidecar
 
 
@@ -47,7 +47,11 @@ def import_folder(folder: str | Path) -> tuple[xr.Dataset, list[dict]]:
     breaches = [f"{folder / NAME}: the campaign {line}" for line in problems]
     if breaches:
         raise ImportProblem("\n".join(breaches))
-    return campaign, _rows(sensors, cuts, rate)
+    return campaign, [
+        _row(sensor, sensor.signals[index], cut, rate)
+        for index, cut in enumerate(cuts)
+        for sensor in sensors
+    ]
 
 
 def _sidecar_from_files(folder, found):
@@ -78,27 +82,23 @@ def _campaign(sidecar, sensors, cuts, rate, voltage):
     Shorter records are padded with NaN, and valid_samples gives their lengths.
     """
     lengths = [cut.length for cut in cuts]
-    groups = {
-        role: [sensor for sensor in sensors if sensor.role == role]
-        for role in ("force", "response")
-    }
-    stacked = {
-        role: np.array(
+
+    def padded(cut, signal):
+        values = cut.of(signal)
+        return np.concatenate([values, np.full(max(lengths) - values.size, np.nan)])
+
+    groups, stacked = {}, {}
+    for role in ("force", "response"):
+        groups[role] = [sensor for sensor in sensors if sensor.role == role]
+        stacked[role] = np.array(
             [
-                [_padded(cut.of(sensor.signals[index]), max(lengths)) for sensor in group]
+                [padded(cut, sensor.signals[index]) for sensor in groups[role]]
                 for index, cut in enumerate(cuts)
             ]
         )
-        for role, group in groups.items()
-    }
     optional = {"valid_samples": np.array(lengths, np.int64)} if len({*lengths}) > 1 else {}
     if voltage is not None:
-        optional["voltage"] = np.array(
-            [
-                _padded(cut.of(signal), max(lengths))
-                for signal, cut in zip(voltage, cuts, strict=True)
-            ]
-        )
+        optional["voltage"] = np.array(list(map(padded, cuts, voltage)))
     if sidecar.records[0].support_gap_m is not None:
         optional["support_gap"] = np.array(
             [record.support_gap_m for record in sidecar.records], float
@@ -127,10 +127,6 @@ def _campaign(sidecar, sensors, cuts, rate, voltage):
     )
 
 
-def _padded(values, length):
-    return np.concatenate([values, np.full(length - values.size, np.nan)])
-
-
 def _levels(sidecar, cuts, loads):
     """Return the Level of each record; repeats are counted if the sidecar does not give them."""
     levels, keys = [], []
@@ -141,15 +137,6 @@ def _levels(sidecar, cuts, loads):
         levels.append(Level(cut.name, gap, repeat, record.split))
         keys.append(key)
     return levels
-
-
-def _rows(sensors: list[ResolvedSensor], cuts: list[Cut], rate: float) -> list[dict]:
-    """Return the rows of import_folder."""
-    return [
-        _row(sensor, sensor.signals[index], cut, rate)
-        for index, cut in enumerate(cuts)
-        for sensor in sensors
-    ]
 
 
 def _row(sensor, signal, cut, rate):

@@ -6,7 +6,7 @@ It also states the values that the files lack.
 from __future__ import annotations
 
 import copy
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal, get_args
 
@@ -178,7 +178,8 @@ def _without(data: dict[str, Any], errors: Sequence[Mapping[str, Any]]) -> Sidec
         level, last = None, None
         value: Any = rest
         for part in error["loc"]:
-            if not isinstance(value, (dict, list)) or part not in _keys(value):
+            keys = range(len(value)) if isinstance(value, list) else value
+            if not isinstance(value, (dict, list)) or part not in keys:
                 break
             if isinstance(value, dict):
                 level, last = value, part
@@ -190,10 +191,6 @@ def _without(data: dict[str, Any], errors: Sequence[Mapping[str, Any]]) -> Sidec
         return Sidecar.model_validate(rest)
     except ValidationError:
         return None
-
-
-def _keys(value: dict | list) -> Collection[Any]:
-    return value if isinstance(value, dict) else range(len(value))
 
 
 def _contradictions(sidecar: Sidecar) -> Iterator[str]:
@@ -220,7 +217,9 @@ def _contradictions(sidecar: Sidecar) -> Iterator[str]:
                     f" {', '.join(sensors)}"
                 )
     if all(record.all_files() for record in sidecar.records):
-        yield from _records_twice(sidecar.records)
+        names = record_names(sidecar.records)
+        for name in sorted({name for name in names if names.count(name) > 1}):
+            yield f"{names.count(name)} records are called '{name}': give each a name of its own"
     given = {record.support_gap_m and len(record.support_gap_m) for record in sidecar.records}
     if len(given) > 1:
         yield (
@@ -243,13 +242,6 @@ def record_names(records: tuple[Record, ...]) -> list[str]:
         )
         names.append(record.name or (f"{stem}_{earlier + 1}" if earlier else stem))
     return names
-
-
-def _records_twice(records: tuple[Record, ...]) -> Iterator[str]:
-    """Yield a sentence for each name that several records have."""
-    names = record_names(records)
-    for name in sorted({name for name in names if names.count(name) > 1}):
-        yield f"{names.count(name)} records are called '{name}': give each a name of its own"
 
 
 def _sentence(path: str | Path, error: Mapping, data: Any) -> str:

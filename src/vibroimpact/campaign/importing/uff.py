@@ -28,7 +28,6 @@ LENGTH_POWER = {8: 1, 11: 1, 12: 1}  # of the length unit; forces follow the for
 AXES = {1: "x", 2: "y", 3: "z"}
 NOTHING = ("", "NONE", "None", "none")
 UNKNOWN, TIME = 0, 17
-TIME_TYPES = (UNKNOWN, TIME)
 MARK = re.compile(rb"    -1(?= {74}|[\r\n]|\Z)")  # of the begin and the end of a dataset
 ORDINATE_LINE, UNIT_LABEL = 10, slice(46, 66)  # of the unit of the ordinate, from the first mark
 HEADER = 2000  # bytes, more than the header of a dataset 58 has
@@ -138,12 +137,16 @@ def _label_of_unit(header):
 
 
 def _is_time_record(data):
-    return (
-        data["func_type"] in (SHOCK, TIME_RESPONSE)
-        and data.get("abscissa_spec_data_type", 0) in TIME_TYPES
-        and (data.get("abscissa_spec_data_type", 0) == TIME or _is_time(data))
-        and not np.iscomplexobj(data["data"])
-    )
+    """Whether a function is real and its abscissa a time: of the type, or of an unknown type with
+    the label of a time, or none.
+    """
+    abscissa = data.get("abscissa_spec_data_type", UNKNOWN)
+    if data["func_type"] not in (SHOCK, TIME_RESPONSE) or np.iscomplexobj(data["data"]):
+        return False
+    try:
+        return abscissa == TIME or (abscissa == UNKNOWN and _second(data, "") > 0.0)
+    except ImportProblem:
+        return False
 
 
 def _signal(data, path, nodes, units):
@@ -193,14 +196,6 @@ def _signal(data, path, nodes, units):
         note,
         start=float(start),
     )
-
-
-def _is_time(data):
-    """Whether an abscissa of unknown type has the label of a time, or none."""
-    try:
-        return _second(data, "") > 0.0
-    except ImportProblem:
-        return False
 
 
 def _second(data, place):
