@@ -128,24 +128,20 @@ def campaign_dataset(
     optional: {name: values} of optional variables.
     attributes: source, antialias, start_up, period_samples, transient_periods, band_Hz.
     """
-    if not drives:
-        nowhere = Channel("force", (np.nan,) * 3, (0.0, 0.0, 1.0), "N", "generic")
-        still = np.zeros((len(levels), 1, np.shape(response)[-1]))
-        rate = sampling_frequency
-        whole = campaign_dataset(
-            still, response, channels, [nowhere], levels, rate, optional, **attributes
-        )
-        names = [name for name in whole.variables if str(name).startswith("force")]
-        return whole.drop_vars([*names, "load_rms"])
-    load = _loads(np.asarray(force), drives[0], sampling_frequency, band_of(attributes))
-    units = {"units": drives[0].units} if len(drives) == 1 else {}
-    data: dict[str, tuple] = {
-        "force": (("record", "force_channel", "time"), np.asarray(force, np.float32), units),
-        "response": (("record", "channel", "time"), np.asarray(response, np.float32)),
-        "load_rms": ("record", load, {"units": "m s-2" if drives[0].kind == BASE else "N"}),
-        "time": ("time", np.arange(np.shape(force)[-1]) / sampling_frequency, {"units": "s"}),
+    data: dict[str, tuple] = {}
+    if drives:
+        load = _loads(np.asarray(force), drives[0], sampling_frequency, band_of(attributes))
+        units = {"units": drives[0].units} if len(drives) == 1 else {}
+        data = {
+            "force": (DIMENSIONS["force"], np.asarray(force, np.float32), units),
+            "load_rms": ("record", load, {"units": "m s-2" if drives[0].kind == BASE else "N"}),
+            **_channel_variables("force_channel", drives),
+        }
+    times = np.arange(np.shape(response)[-1]) / sampling_frequency
+    data |= {
+        "response": (DIMENSIONS["response"], np.asarray(response, np.float32)),
+        "time": ("time", times, {"units": "s"}),
         **_channel_variables("channel", channels),
-        **_channel_variables("force_channel", drives),
         **_level_variables(levels),
         **{name: (DIMENSIONS[name], np.asarray(own)) for name, own in (optional or {}).items()},
     }

@@ -14,28 +14,20 @@ from typing import Any
 # Order of the time derivative of displacement that each kind of sensor measures.
 TIME_DERIVATIVES = {"displacement": 0, "velocity": 1, "acceleration": 2}
 
-SI_OF_KIND = {
-    "acceleration": "m s-2",
-    "velocity": "m s-1",
-    "displacement": "m",
-    "contact_force": "N",
-    "strain": "1",
-    "force": "N",
-    "base_acceleration": "m s-2",
-    "voltage": "V",
-    "time": "s",
+# Kind of a quantity -> (SI unit, examples of its units).
+UNITS_OF_KIND = {
+    "acceleration": ("m s-2", "m s-2, mm s-2, ft s-2 or g"),
+    "velocity": ("m s-1", "m s-1 or mm s-1"),
+    "displacement": ("m", "m, mm or um"),
+    "contact_force": ("N", "N, kN or lbf"),
+    "strain": ("1", "1, um/m or microstrain"),
+    "force": ("N", "N, kN or lbf"),
+    "base_acceleration": ("m s-2", "m s-2, mm s-2 or g"),
+    "voltage": ("V", "V or mV"),
+    "time": ("s", "s or ms"),
 }
-EXAMPLES = {
-    "acceleration": "m s-2, mm s-2, ft s-2 or g",
-    "velocity": "m s-1 or mm s-1",
-    "displacement": "m, mm or um",
-    "contact_force": "N, kN or lbf",
-    "strain": "1, um/m or microstrain",
-    "force": "N, kN or lbf",
-    "base_acceleration": "m s-2, mm s-2 or g",
-    "voltage": "V or mV",
-    "time": "s or ms",
-}
+SI_OF_KIND = {kind: unit for kind, (unit, _) in UNITS_OF_KIND.items()}
+ANY = ("", "m s-2, mm, N or V; 1 for a number without a unit")
 # Texts that nearly every file holds. They save the import of pint, half a second per job.
 COMMON = {
     "m s-2": ("acceleration", 1.0),
@@ -95,10 +87,7 @@ def si_factor(units: str, kind: str) -> float:
     """
     text = units.strip()
     if not text:
-        raise UnitError(
-            "has no unit: give one, such as"
-            f" {EXAMPLES.get(kind, 'm s-2, mm, N or V; 1 for a number without a unit')}"
-        )
+        raise UnitError(f"has no unit: give one, such as {UNITS_OF_KIND.get(kind, ANY)[1]}")
     if text in COMMON and _fits(COMMON[text][0], kind):
         return COMMON[text][1]
     gravity = SHARE_OF_G.fullmatch(text) if "acceleration" in _kinds(kind) else None
@@ -114,7 +103,7 @@ def si_factor(units: str, kind: str) -> float:
     )
     raise UnitError(
         f"has the unit '{text}', which is no {kind}{hint}: give a unit such as"
-        f" {EXAMPLES.get(_kinds(kind)[0], 'N')}"
+        f" {UNITS_OF_KIND[_kinds(kind)[0]][1]}"
     )
 
 
