@@ -6,8 +6,6 @@ along their direction. The base's share is taken out here, once, and everything 
 on relative motion. A displacement sensor is taken to sit on the base, so that nothing is taken out.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 

@@ -4,8 +4,6 @@ Their allowed values are in campaign/stated_values.py. A problem is a sentence t
 the variable or attribute, without the file's name.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import xarray as xr

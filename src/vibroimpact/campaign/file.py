@@ -36,8 +36,6 @@ transient_periods, source, band_Hz (low, high: the band of the analysis; by defa
 the force excites). Between samples the force is band-limited, not constant.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

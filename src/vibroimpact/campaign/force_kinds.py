@@ -3,8 +3,6 @@
 The variable force_channel_kind (force_channel) says it; without it every force channel is a force.
 """
 
-from __future__ import annotations
-
 from typing import Literal, get_args
 
 import numpy as np

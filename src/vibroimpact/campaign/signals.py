@@ -3,8 +3,6 @@
 Spectra: response per force, coherence, and the band of both.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -107,7 +105,7 @@ class CampaignSignals:
         driven = [force[0] for force in self.force if len(force)]
         return self.stated_period or common_period(driven)
 
-    def require_units(self) -> CampaignSignals:
+    def require_units(self) -> "CampaignSignals":
         """Return the signals themselves. Raises CampaignError if a unit can not be used."""
         for fault in (*self.unit_faults.values(), *self.force_unit_faults.values()):
             raise CampaignError(fault)

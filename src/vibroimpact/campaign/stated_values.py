@@ -4,8 +4,6 @@ Each function yields sentences that begin with the place, "gap[0] = -0.001 m", a
 remedy.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Literal, get_args

@@ -1,7 +1,5 @@
 """Numbers in --config NAME=NUMBER, in addition to the keys of the study."""
 
-from __future__ import annotations
-
 import math
 
 MOST = 1e15  # of whole numbers: below it every one is exact as a float

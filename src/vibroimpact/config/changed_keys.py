@@ -1,7 +1,5 @@
 """A configuration with some keys changed, as a user would write it."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping
 from typing import Any

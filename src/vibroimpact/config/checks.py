@@ -5,8 +5,6 @@ parts of them, see _parts. It runs when those sections are valid by themselves, 
 elsewhere does not hide the others, and if there are such parts.
 """
 
-from __future__ import annotations
-
 import inspect
 import math
 import os

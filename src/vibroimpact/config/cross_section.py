@@ -1,7 +1,5 @@
 """The keys of the cross-section of a tube or a bar."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag

@@ -1,7 +1,5 @@
 """The facts that the declaration of a key states, in words."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import dataclass
 from types import NoneType

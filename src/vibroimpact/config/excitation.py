@@ -1,7 +1,5 @@
 """The keys of the forces: their places and their course in time."""
 
-from __future__ import annotations
-
 from typing import Annotated, Literal
 
 from pydantic import Field

@@ -1,7 +1,5 @@
 """The keys of a flow across a tube, for its fluid-elastic stability."""
 
-from __future__ import annotations
-
 from typing import Annotated, Literal
 
 from pydantic import Field, ValidationInfo, field_validator

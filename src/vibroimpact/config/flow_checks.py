@@ -1,7 +1,5 @@
 """The checks of a flow across the tube."""
 
-from __future__ import annotations
-
 from vibroimpact.geometry.centreline import Centreline
 from vibroimpact.geometry.sections import outer_width
 

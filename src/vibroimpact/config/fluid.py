@@ -4,8 +4,6 @@ Density and viscosity of a named fluid are filled in when the configuration is r
 configuration as it runs holds the numbers.
 """
 
-from __future__ import annotations
-
 from typing import Annotated, Literal
 
 from pydantic import Field, ValidationInfo, field_validator

@@ -1,7 +1,5 @@
 """The checks of the geometry: the tube, the points and supports on it, and the gaps."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 

@@ -4,8 +4,6 @@ They are sought before a study runs, not when a configuration is read: laws that
 are valid.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

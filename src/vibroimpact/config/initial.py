@@ -1,7 +1,5 @@
 """The keys of the state at the start of a run."""
 
-from __future__ import annotations
-
 from typing import Annotated, Literal
 
 from pydantic import Field

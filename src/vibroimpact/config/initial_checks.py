@@ -1,7 +1,5 @@
 """The checks of the initial state."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from vibroimpact.geometry.centreline import LOCATION_TOLERANCE_M

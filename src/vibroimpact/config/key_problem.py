@@ -1,7 +1,5 @@
 """A fault that a check between keys of a configuration finds."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from difflib import get_close_matches

@@ -1,7 +1,5 @@
 """The reference of every configuration key as Markdown, generated from the declaration."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import groupby

@@ -4,8 +4,6 @@ A value that is left out becomes that of the named metal when the configuration 
 configuration as it runs holds the numbers.
 """
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from pydantic import ConfigDict, Field, ValidationInfo, field_validator

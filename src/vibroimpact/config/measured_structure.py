@@ -1,7 +1,5 @@
 """The keys of a structure whose modes are identified from its own campaign."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from typing import Annotated, Any, Literal

@@ -4,8 +4,6 @@ The density is filled in when the configuration is read, so that the configurati
 the number.
 """
 
-from __future__ import annotations
-
 from typing import Annotated
 
 from pydantic import Field, ValidationInfo

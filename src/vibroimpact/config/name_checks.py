@@ -1,7 +1,5 @@
 """The checks of names: every point, element and support that a configuration names is there."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 

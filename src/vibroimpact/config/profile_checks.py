@@ -1,7 +1,5 @@
 """The checks of the profiles of supports: allowed contact and preload, places of their lands."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

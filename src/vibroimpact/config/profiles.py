@@ -1,7 +1,5 @@
 """The keys of a support's profile: the shape of the obstacle at the tube."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any, Literal
 
 from pydantic import Field

@@ -2,8 +2,6 @@
 end with it, and a remedy for values out of range.
 """
 
-from __future__ import annotations
-
 import operator
 import re
 from collections.abc import Callable

@@ -2,8 +2,6 @@
 and remedy.
 """
 
-from __future__ import annotations
-
 import copy
 import os
 import re

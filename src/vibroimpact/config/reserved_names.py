@@ -1,7 +1,5 @@
 """Folders of results/ that targets of their own write: no study or campaign may have one."""
 
-from __future__ import annotations
-
 import re
 
 TARGETS = ("validation",)

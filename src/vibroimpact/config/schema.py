@@ -5,8 +5,6 @@ names.
 The checks, the JSON schema and the key reference all read this declaration.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 

@@ -1,7 +1,5 @@
 """The checks of a tube's cross-section and of the fluids inside and outside it."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from vibroimpact.geometry.centreline import SAME_PLACE_M, Centreline

@@ -5,8 +5,6 @@ StageSettings). A changed key therefore reruns just the stages that use it, and 
 key that it does not declare.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

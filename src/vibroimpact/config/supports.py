@@ -1,7 +1,5 @@
 """The keys of local laws: gap supports, force laws between points, and point masses."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 from pydantic import Field

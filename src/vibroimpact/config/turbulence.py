@@ -1,7 +1,5 @@
 """The keys of a turbulent flow: a random force per length, spread along a tube."""
 
-from __future__ import annotations
-
 from typing import Annotated, Literal
 
 from pydantic import Field

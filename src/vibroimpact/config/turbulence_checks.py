@@ -1,7 +1,5 @@
 """The checks of a turbulent force: its stretches, its direction, its band and its spectrum."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """The keys of the wear life of a study."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 from pydantic import Field

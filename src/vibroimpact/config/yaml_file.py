@@ -1,7 +1,5 @@
 """Reading a YAML file: the mapping in it, or one sentence with file, line and column."""
 
-from __future__ import annotations
-
 import os
 from typing import Any
 

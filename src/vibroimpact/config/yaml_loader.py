@@ -5,8 +5,6 @@ base 8 or 60, and more nesting or more values than a configuration has. Values c
 aliases repeat them, so that a short file can not stand for a huge one.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Hashable
 from typing import Any, NoReturn

@@ -2,8 +2,6 @@
 and a damaged file is one sentence.
 """
 
-from __future__ import annotations
-
 import math
 import zipfile
 from collections import Counter

@@ -1,7 +1,5 @@
 """HDF5 files that a user gives: whether they are one, and damage that HDF5 itself does not see."""
 
-from __future__ import annotations
-
 import mmap
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The origin of a result: digests of configuration and source, versions, imported files."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import platform

@@ -3,8 +3,6 @@
 A unit that is not certain raises an error that states the remedy; nothing is guessed.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from functools import cache

@@ -1,7 +1,5 @@
 """Files that appear complete or not at all, and the sentence if one cannot be written or read."""
 
-from __future__ import annotations
-
 import errno
 import os
 import re

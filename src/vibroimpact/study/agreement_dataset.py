@@ -1,7 +1,5 @@
 """The consistency tables of a study as one dataset."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

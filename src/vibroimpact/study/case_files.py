@@ -1,7 +1,5 @@
 """Files of cases, read with a check that their content fits their names."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from pathlib import Path

@@ -11,8 +11,6 @@ Variables of the dataset, with X the segment spectra of a channel:
 A cross-spectrum is the mean over segments of X conj(Y).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Any
 

@@ -4,8 +4,6 @@ An id is made of values, not of positions in a list: adding a load, gap or seed 
 All loads and gaps of a seed have the same force, scaled.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterable, Sequence

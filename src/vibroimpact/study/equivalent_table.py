@@ -5,8 +5,6 @@ median of the compared methods' medians; the secant values of the simulated cont
 a check.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -4,8 +4,6 @@ They begin at the initial state, without start-up and without output filter. If 
 at rest, the initial state is added to static equilibrium.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

@@ -6,8 +6,6 @@ and c of each support; with them the eigenvalues have the critical velocity that
 linear tube predicts. If the turbulence follows the velocity there is such a run at each.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import product

@@ -1,7 +1,5 @@
 """Turbulence that follows the velocity of the flow, in runs side by side."""
 
-from __future__ import annotations
-
 from typing import Any, cast
 
 from vibroimpact.config.changed_keys import changed_config

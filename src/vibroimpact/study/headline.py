@@ -1,7 +1,5 @@
 """The headline of a study, and the flags of its tables."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 import numpy as np

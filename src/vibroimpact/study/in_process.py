@@ -4,8 +4,6 @@ For notebooks and scripts. The workflow makes the same numbers in parallel jobs 
 files. Functions import the identification: a simulation starts half a second earlier without it.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

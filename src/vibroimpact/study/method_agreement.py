@@ -4,8 +4,6 @@ Rows are dicts with the columns of estimate.table_rows. k (N/m) and c (N s/m) ar
 group in one direction; NaN is unresolved.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import combinations
 

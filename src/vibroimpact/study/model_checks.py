@@ -1,7 +1,5 @@
 """The checks of a study that need its model, before anything runs: structure, basis, step, mesh."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Whether results are of the configuration in their folder: a killed run leaves older ones."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -2,8 +2,6 @@
 a reader's words.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

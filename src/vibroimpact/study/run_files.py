@@ -1,7 +1,5 @@
 """The files of a run in addition to its results: its configuration and provenance."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime

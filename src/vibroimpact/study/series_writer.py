@@ -3,8 +3,6 @@
 Memory holds a piece of them, whatever their duration.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Simulation of the cases of a study: forces in, one record per case out."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import nullcontext
 from functools import partial

@@ -3,8 +3,6 @@
 Memory holds one segment of the time series, whatever their duration.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from typing import Any

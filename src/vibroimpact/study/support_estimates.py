@@ -1,7 +1,5 @@
 """The equivalent supports of one case by every method, as a notebook shows them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
@@ -50,7 +48,7 @@ class SupportEstimates(Mapping[str, Estimate]):
         """Return (group of supports, direction) of everything that was identified."""
         return list(dict.fromkeys((each.group, each.direction) for each in self.estimates))
 
-    def of(self, group: str, direction: str) -> SupportEstimates:
+    def of(self, group: str, direction: str) -> "SupportEstimates":
         """Return the estimates of one group of supports in one direction."""
         chosen = [
             each for each in self.estimates if (each.group, each.direction) == (group, direction)

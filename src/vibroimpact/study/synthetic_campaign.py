@@ -3,8 +3,6 @@
 It is the study's tube with another force, a slightly different gap and measurement noise.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -5,8 +5,6 @@ bends the gains; it does not turn all of them round, move them by one factor at 
 one sensor the gains of another. Each function yields (record, channel or None, sentence).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property

@@ -6,8 +6,6 @@ if a row is about all of them.
 A file is refused only if the rest holds no measured force, no response, or no two levels.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -5,8 +5,6 @@ resonances. Twice the phase of the response per force is then zero on most lines
 phase in proportion to frequency, in its own channel alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -5,8 +5,6 @@ Band powers of the responses per force are compared. The bands are wide enough t
 few lines only.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from itertools import combinations
 

@@ -1,7 +1,5 @@
 """Faults of a single signal: missing samples, clipping, drop-outs, drifting levels."""
 
-from __future__ import annotations
-
 import numpy as np
 
 TOP_SHARES = (0.01, 0.02, 0.04)  # widths of the bins at the extreme, as shares of it

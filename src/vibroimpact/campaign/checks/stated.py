@@ -3,8 +3,6 @@
 Each yields rows {check, level, record, channel, message}, see file_checks.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

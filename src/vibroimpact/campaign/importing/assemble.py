@@ -1,7 +1,5 @@
 """A folder of measurements as a campaign: its Dataset, and a row per sensor and record."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

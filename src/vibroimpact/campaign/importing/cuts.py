@@ -1,7 +1,5 @@
 """The part of the signals that makes a record, and whether its values can be measured ones."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A draft of campaign.yaml for a folder of measurements that has none."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Frequency response functions of Universal File Format dataset 58, function type 4."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

@@ -3,8 +3,6 @@
 No file outside the folder is read.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The report of an import, and the checks of a campaign, as plain text."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The sensors of a campaign: their signals in every record, and their place, direction and unit."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path

@@ -3,8 +3,6 @@
 It also states the values that the files lack.
 """
 
-from __future__ import annotations
-
 import copy
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path

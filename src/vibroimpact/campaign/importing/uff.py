@@ -3,8 +3,6 @@
 Nodes are taken from datasets 15 and 2411, units from 164.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from pathlib import Path

@@ -7,8 +7,6 @@ Sources:
   substance, eqs. 10 to 12; its enhancement next to the critical point is left out.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

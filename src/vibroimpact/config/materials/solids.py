@@ -5,8 +5,6 @@ temperature, does not change with heat. A Poisson's ratio of 0.3 is taken if the
 none; the bending of a slender tube hardly depends on it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Signals of files that hold named arrays: MATLAB of version 4 to 7.3, and netCDF."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Signals of a file that holds named arrays: which of them are signals, and their sampling."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import dataclass, field

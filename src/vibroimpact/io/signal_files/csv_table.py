@@ -1,7 +1,5 @@
 """Signals of a CSV file."""
 
-from __future__ import annotations
-
 import io
 import re
 from pathlib import Path

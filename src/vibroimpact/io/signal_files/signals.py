@@ -1,7 +1,5 @@
 """A recorded signal as a file gives it, and its resampling to even time steps."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The text of a file whose encoding is not stated."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from .signals import ImportProblem

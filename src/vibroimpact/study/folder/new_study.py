@@ -1,7 +1,5 @@
 """Lay out a folder for a study of one's own: its configuration, Snakefile, profiles and README."""
 
-from __future__ import annotations
-
 import os
 import shutil
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The place of the workflow and its configurations: in the installed package, or in a checkout."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[2]

@@ -12,8 +12,6 @@ the support wears too, the tube has V_t of the worn V_w, and V_t / V_w of the de
 Source: code_aster R7.04.10 (usuvus, usupru), whose flats are approximations of the segment.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

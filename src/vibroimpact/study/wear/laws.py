@@ -3,8 +3,6 @@
 Source: code_aster R7.04.10, POST_USURE (usupru), and its coefficients (usuban).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The wear life of the lands of the supports of a finished study."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path

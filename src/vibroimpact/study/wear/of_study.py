@@ -1,7 +1,5 @@
 """The wear life of a finished study, from its folder."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from vibroimpact.config.reading import load_config
