@@ -81,7 +81,11 @@ def contract_problems(campaign: xr.Dataset, force_needed: bool = True) -> Iterat
             yield problem
         elif name in campaign.variables:
             sound.add(name)
-    yield from _size_problems(campaign, force_needed)
+    for dim in ("record", "channel", *(["force_channel"] if force_needed else []), "time"):
+        if campaign.sizes.get(dim, 1) < 1:
+            yield f"the dimension {dim} is empty: write one {dim} at least"
+    if campaign.sizes.get("xyz", 3) != 3:
+        yield f"the dimension xyz has the length {campaign.sizes['xyz']}: it must be 3"
     yield from stated_value_problems(campaign, sound)
 
 
@@ -98,12 +102,3 @@ def _form_problem(campaign: xr.Dataset, name: str, dims: tuple[str, ...]) -> str
         what = "texts" if variable.dtype.kind == "O" else f"values of type {variable.dtype}"
         return f"'{name}' holds {what}: write numbers"
     return None
-
-
-def _size_problems(campaign: xr.Dataset, force_needed: bool) -> Iterator[str]:
-    """Yield a sentence for every dimension that is empty, or has no room for its meaning."""
-    for dim in ("record", "channel", *(["force_channel"] if force_needed else []), "time"):
-        if campaign.sizes.get(dim, 1) < 1:
-            yield f"the dimension {dim} is empty: write one {dim} at least"
-    if campaign.sizes.get("xyz", 3) != 3:
-        yield f"the dimension xyz has the length {campaign.sizes['xyz']}: it must be 3"

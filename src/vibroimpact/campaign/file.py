@@ -292,7 +292,9 @@ def fill_missing(campaign: xr.Dataset) -> xr.Dataset:
     line for each, or is empty.
     """
     assumed: list[str] = []
-    campaign = _with_real_signals(campaign)
+    # The counts of a converter as real numbers, which know NaN.
+    counts = [name for name in ("force", "response") if campaign[name].dtype.kind in "iu"]
+    campaign = campaign.assign({name: campaign[name].astype(float) for name in counts})
     count = campaign.sizes["record"]
 
     def fill(name: str, told: str, values: Any, **attributes: str) -> None:
@@ -326,12 +328,6 @@ def fill_missing(campaign: xr.Dataset) -> xr.Dataset:
         numbered = [f"record {index}" for index in range(count)]
         fill("record_name", "records were numbered", np.array(numbered, dtype=object))
     return campaign.assign_attrs({**DEFAULTS, **campaign.attrs, "assumed": "\n".join(assumed)})
-
-
-def _with_real_signals(campaign: xr.Dataset) -> xr.Dataset:
-    """Return the Dataset with the counts of a converter as real numbers, which know NaN."""
-    counts = [name for name in ("force", "response") if campaign[name].dtype.kind in "iu"]
-    return campaign.assign({name: campaign[name].astype(float) for name in counts})
 
 
 def load_of(force: np.ndarray, rate: float, band_Hz: tuple[float, float] | None = None) -> float:

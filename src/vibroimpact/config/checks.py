@@ -77,11 +77,9 @@ def _parts(sections: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _repeated_values(grid: ConfigPart) -> Problems:
-    values = {
-        "gap_m": grid.gap_m,
-        "load_rms_N": grid.load_rms_N if isinstance(grid.load_rms_N, tuple) else (),
-    }
-    for key, row in values.items():
+    loads = grid.load_rms_N
+    listed = loads if isinstance(loads, tuple) else ()
+    for key, row in (("gap_m", grid.gap_m), ("load_rms_N", listed)):
         for value, times in Counter(row).items():
             if times > 1:
                 yield Problem(
@@ -89,7 +87,6 @@ def _repeated_values(grid: ConfigPart) -> Problems:
                     f"stands {times} times: a value names a case, give each once",
                     value,
                 )
-    loads = grid.load_rms_N
     if isinstance(loads, tuple):
         return
     if loads.last <= loads.first and loads.count > 1:

@@ -22,10 +22,16 @@ from .quantities import (
 )
 from .turbulence import Ends, Fluid_density, Velocity
 
-Constant = Annotated[Number, Range("Connors' constant is about 2.4 to 10", above=0, at_most=100)]
+Constant = Annotated[
+    Number, Range("Connors' constant is about 2.4 to 10", above=0, at_most=100), Unit("1")
+]
 MIXTURE = "Vapour and liquid, whose density is the homogeneous one; null for a density"
-Coefficient = Annotated[Number, Range("a coefficient of the force", at_least=-1e4, at_most=1e4)]
-Positive_number = Annotated[Number, Range("give a positive number", above=0, at_most=1e4)]
+Coefficient = Annotated[
+    Number, Range("a coefficient of the force", at_least=-1e4, at_most=1e4), Unit("1")
+]
+Positive_number = Annotated[
+    Number, Range("give a positive number", above=0, at_most=1e4), Unit("1")
+]
 
 
 class FlowStretch(Ends):
@@ -52,7 +58,7 @@ class Connors(Section):
     """Connors' criterion: V_c = K f sqrt(m 2 pi zeta / density)."""
 
     kind: Literal["connors"] = Field(description="This kind of criterion.")
-    constant: Annotated[tuple[Annotated[Constant, Unit("1")], ...], Not_empty] = Field(
+    constant: Annotated[tuple[Constant, ...], Not_empty] = Field(
         description="K, or several for a range. It belongs to the pattern of the bundle and to the"
         " definition of damping of its source, so that there is no default.",
         examples=[[2.4, 4.0]],
@@ -84,18 +90,16 @@ class Lags(Section):
     """
 
     kind: Literal["lags"] = Field(description="This kind of coupling.")
-    stiffness: Annotated[Coefficient, Unit("1")] = Field(description="a0.", examples=[20.0])
-    damping: Annotated[Coefficient, Unit("1")] = Field(description="a1.", examples=[0.3])
-    amplitudes: tuple[Annotated[Coefficient, Unit("1")], ...] = Field(
+    stiffness: Coefficient = Field(description="a0.", examples=[20.0])
+    damping: Coefficient = Field(description="a1.", examples=[0.3])
+    amplitudes: tuple[Coefficient, ...] = Field(
         (), description="b, one for each lag.", examples=[[-20.0]]
     )
-    rates: tuple[Annotated[Positive_number, Unit("1")], ...] = Field(
+    rates: tuple[Positive_number, ...] = Field(
         (), description="gamma, one for each lag.", examples=[[1.0]]
     )
 
-    reduced_velocity: (
-        tuple[Annotated[Positive_number, Unit("1")], Annotated[Positive_number, Unit("1")]] | None
-    ) = Field(
+    reduced_velocity: tuple[Positive_number, Positive_number] | None = Field(
         None,
         description="Reduced velocities V/(f D) that the coefficients were fitted between, for a"
         " warning outside; null for no limit.",
@@ -109,13 +113,11 @@ class QuasiSteady(Section):
     """
 
     kind: Literal["quasi_steady"] = Field(description="This kind of coupling.")
-    lift_slope: Annotated[Coefficient, Unit("1")] = Field(
+    lift_slope: Coefficient = Field(
         description="Slope of the lift coefficient over y/D.", examples=[-20.0]
     )
-    drag: Annotated[Coefficient, Unit("1")] = Field(description="Drag coefficient.", examples=[0.3])
-    delay: Annotated[Positive_number, Unit("1")] = Field(
-        1.0, description="Delay of the lift over D/V, mu."
-    )
+    drag: Coefficient = Field(description="Drag coefficient.", examples=[0.3])
+    delay: Positive_number = Field(1.0, description="Delay of the lift over D/V, mu.")
 
 
 class ConnorsForce(Section):
@@ -124,7 +126,7 @@ class ConnorsForce(Section):
     """
 
     kind: Literal["connors"] = Field(description="This kind of coupling.")
-    constant: Annotated[Constant, Unit("1")] = Field(description="Connors' K.", examples=[3.0])
+    constant: Constant = Field(description="Connors' K.", examples=[3.0])
     band_Hz: Band_Hz = Field(
         description="Band of the modes that matter. Wider than a decade the stiffness drifts more.",
         examples=[[5.0, 200.0]],
@@ -137,7 +139,7 @@ class NegativeDamping(Section):
     """
 
     kind: Literal["negative_damping"] = Field(description="This kind of coupling.")
-    constant: Annotated[Constant, Unit("1")] = Field(description="Connors' K.", examples=[3.0])
+    constant: Constant = Field(description="Connors' K.", examples=[3.0])
     frequency_Hz: Frequency_Hz = Field(
         description="Frequency of the mode that it is frozen at.", examples=[30.0]
     )

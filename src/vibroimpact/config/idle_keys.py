@@ -71,7 +71,11 @@ def _of_elements(config: Config) -> Iterator[str]:
         for key, other in BESIDE.items():
             if other is not None and not getattr(element, other):
                 yield from _idle(place, element, key, f"{other} is 0", f"give {other}, or {OUT}")
-        if not _exerts_a_force(element) and element.name not in partners:
+        exerted = any(
+            getattr(element, key) and (other is None or getattr(element, other))
+            for key, other in FORCES.items()
+        )
+        if not exerted and element.name not in partners:
             yield (
                 f"{place} = '{element.name}' exerts no force: give a stiffness, a damping, a"
                 f" drag, or both keys of the slider or of the saturating spring; or {OUT}"
@@ -82,13 +86,6 @@ def _of_elements(config: Config) -> Iterator[str]:
                 f"{place}.drag_partner = '{partner.name}' {why}: the two rates are those of one"
                 " motion in a plane: give an element at the same point in another direction"
             )
-
-
-def _exerts_a_force(element) -> bool:
-    return any(
-        getattr(element, key) and (other is None or getattr(element, other))
-        for key, other in FORCES.items()
-    )
 
 
 def _apart(element: Any, partner: Any) -> str:

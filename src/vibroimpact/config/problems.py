@@ -15,18 +15,14 @@ from .quantities import NOT_GIVEN, Section
 
 UNKNOWN = "extra_forbidden"
 PLAIN_WORDS = {
-    "model_type": "must be a block of keys",
-    "model_attributes_type": "must be a block of keys",
-    "dict_type": "must be a block of keys",
+    **dict.fromkeys(
+        ("model_type", "model_attributes_type", "dict_type"), "must be a block of keys"
+    ),
+    **dict.fromkeys(("int_type", "int_parsing", "int_from_float"), "must be a whole number"),
+    **dict.fromkeys(("float_type", "float_parsing"), "must be a number"),
+    **dict.fromkeys(("bool_type", "bool_parsing"), "must be true or false"),
     "tuple_type": "must be a list",
-    "float_type": "must be a number",
-    "float_parsing": "must be a number",
-    "int_type": "must be a whole number",
-    "int_parsing": "must be a whole number",
-    "int_from_float": "must be a whole number",
     "string_type": "must be a text",
-    "bool_type": "must be true or false",
-    "bool_parsing": "must be true or false",
     "finite_number": "must be a finite number",
     "int_parsing_size": "is too large a whole number: give at most 9223372036854775807",
 }

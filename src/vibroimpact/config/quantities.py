@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple, TypeVar
 
 from pydantic import (
     AfterValidator,
@@ -284,8 +284,10 @@ def _shape_at(depth: int) -> Callable[[Any], str]:
     return shape
 
 
-# A key that takes one value or a list of them is
-# Annotated[Annotated[X, One] | Annotated[tuple[X, ...], List], One_or_list].
+# A key that takes one value or a list of them is One_or_more[X]; with other lists it is
+# Annotated[Annotated[X, One] | Annotated[..., List], One_or_list].
 One, List = Tag("one"), Tag("list")
 One_or_list = Discriminator(_shape_at(0))
+X = TypeVar("X")
+One_or_more = Annotated[Annotated[X, One] | Annotated[tuple[X, ...], List], One_or_list]
 One_or_list_of_pairs = Discriminator(_shape_at(1))

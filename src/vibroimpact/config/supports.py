@@ -16,8 +16,8 @@ from .quantities import (
     Non_negative,
     Number,
     One,
-    One_or_list,
     One_or_list_of_pairs,
+    One_or_more,
     Pair,
     Positive_factor,
     Range,
@@ -108,17 +108,12 @@ class Support(Section):
         " relative to other_point. Null for a support on the ground.",
         examples=["frame"],
     )
-    stiffness_N_per_m: Annotated[
-        Annotated[Stiffness, One] | Annotated[tuple[Stiffness, ...], List], One_or_list
-    ] = Field(
+    stiffness_N_per_m: One_or_more[Stiffness] = Field(
         description="Contact stiffness: the total of the support, shared equally by its contact"
         " points, or a list with the stiffness of each.",
         examples=[4.0e6],
     )
-    gap_factor: Annotated[
-        Annotated[Positive_factor, One] | Annotated[tuple[Positive_factor, ...], List],
-        One_or_list,
-    ] = Field(
+    gap_factor: One_or_more[Positive_factor] = Field(
         1.0,
         description="Factor of the gap of the case at this support, or a list with one factor per"
         " contact point. Not used if gap_m is given.",

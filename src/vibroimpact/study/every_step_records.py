@@ -22,7 +22,7 @@ from vibroimpact.integration.preload import seated
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .cases import Case
-from .record_variables import describe
+from .record_variables import describe, place_attributes
 
 
 def trace_cases(
@@ -79,32 +79,16 @@ def _normalised_forces(
 
 
 def _dataset(config: Any, model: ModalModel, traces: Traces, lane: int, case: Case) -> xr.Dataset:
+    of_lanes = ("contact_displacement", "contact_force", "element_displacement", "element_force")
     values: dict[str, Any] = {
-        name: getattr(traces, name)[lane]
-        for name in (
-            "contact_displacement",
-            "contact_force",
-            "element_displacement",
-            "element_force",
-        )
+        name: getattr(traces, name)[lane] for name in (*of_lanes, "sliding_work", "slip_work")
     }
-    values |= {
-        "run_energy": [value[lane] for value in traces.energy.values()],
-        "sliding_work": traces.sliding_work[lane],
-        "slip_work": traces.slip_work[lane],
-    }
+    values["run_energy"] = [value[lane] for value in traces.energy.values()]
     coordinates = {
         "step_time": traces.time,
         "run_term": list(traces.energy),
         "support": list(model.support_names),
         "element": list(model.element_names),
     }
-    attributes = {
-        "study": config.study,
-        "case": case.id,
-        "load_rms_N": case.load_rms_N,
-        "gap_m": case.gap_m,
-        "seed": case.seed,
-        "steps_per_second": float(config.integration.steps_per_second),
-    }
-    return describe(values, coordinates, attributes)
+    rate = {"steps_per_second": float(config.integration.steps_per_second)}
+    return describe(values, coordinates, place_attributes(config, case) | rate)

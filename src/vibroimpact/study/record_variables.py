@@ -5,6 +5,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from .cases import Case
+
 # {(dimensions, dtype): {name: (units, long name)}}
 DECLARED: dict[tuple[str, str], dict[str, tuple[str, str]]] = {
     ("sensor time", "f4"): {
@@ -130,6 +132,12 @@ def describe(values: dict, coordinates: dict, attributes: dict) -> xr.Dataset:
         data[name] = (dims, np.asarray(value, dtype), {"units": units, "long_name": long_name})
     coords = {name: _coordinate(name, value) for name, value in coordinates.items()}
     return xr.Dataset(data, coords, attributes)
+
+
+def place_attributes(config: Any, case: Case) -> dict[str, Any]:
+    """Return the attributes of a file that say which case of which study it is of."""
+    names = ("load_rms_N", "gap_m", "seed")
+    return {"study": config.study, "case": case.id} | {name: getattr(case, name) for name in names}
 
 
 def split_record(record: xr.Dataset) -> tuple[xr.Dataset, xr.Dataset]:

@@ -27,7 +27,7 @@ from vibroimpact.reduction.modal_model import ModalModel
 
 from .cases import Case
 from .every_step_records import trace_cases
-from .record_variables import describe
+from .record_variables import describe, place_attributes
 
 
 def simulate_cases(
@@ -217,12 +217,7 @@ def sample_times(schedule: Schedule) -> np.ndarray:
 
 def case_attributes(config: Any, schedule: Schedule, case: Case) -> dict:
     """Return the attributes that every file of a case carries."""
-    return {
-        "study": config.study,
-        "case": case.id,
-        "load_rms_N": case.load_rms_N,
-        "gap_m": case.gap_m,
-        "seed": case.seed,
+    return place_attributes(config, case) | {
         "sampling_frequency": float(schedule.sampling_frequency),
         "steps_per_second": float(schedule.steps_per_second),
         "start_up_s": float(schedule.start_up),

@@ -30,34 +30,9 @@ from vibroimpact.campaign.signals import (
 )
 from vibroimpact.io.records import RecordError
 
+from . import linear_record, signal_faults, stated
 from .between_records import contradictions, copies, spike
-from .linear_record import (
-    NO_CAUSE,
-    alignment,
-    channel_delays,
-    mean_coherence,
-    reversed_hint,
-    swap_hints,
-    wakes,
-)
-from .signal_faults import (
-    clipped_share,
-    drop_out,
-    is_drifting,
-    level_trend,
-    missing_samples,
-)
-from .stated import (
-    assumed_rows,
-    check_row,
-    load_rows,
-    period_rows,
-    short_rows,
-    size_rows,
-    time_rows,
-    unit_rows,
-    warning,
-)
+from .stated import check_row, warning
 
 COLUMNS = ("check", "level", "record", "channel", "message")
 NOT_CHECKED = "not checked"
@@ -111,13 +86,13 @@ def check_campaign(campaign: xr.Dataset) -> list[dict]:
         return [check_row("units", "refuse", f"The {error}.")]
     measured = campaign_signals(campaign)
     rows = [
-        *assumed_rows(campaign),
-        *unit_rows(measured),
-        *size_rows(campaign, measured),
-        *time_rows(campaign, measured),
-        *period_rows(measured),
+        *stated.assumed_rows(campaign),
+        *stated.unit_rows(measured),
+        *stated.size_rows(campaign, measured),
+        *stated.time_rows(campaign, measured),
+        *stated.period_rows(measured),
         *_signal_faults(measured),
-        *short_rows(measured),
+        *stated.short_rows(measured),
     ]
     usable = usable_signals(campaign, rows)
     rows += base_motion_rows(measured)
@@ -127,7 +102,7 @@ def check_campaign(campaign: xr.Dataset) -> list[dict]:
     if record is not None:
         spectra = transfer_or_reason(measured, record)
     rows += [
-        *load_rows(campaign, measured),
+        *stated.load_rows(campaign, measured),
         *_linear(measured, spectra, record),
         *_between_records(measured),
         *_directions(measured),
@@ -148,9 +123,9 @@ def _without_force(campaign: xr.Dataset) -> list[dict]:
     """Return the rows of the checks that need no measured force."""
     measured = campaign_signals(fill_missing(campaign))
     return [
-        *unit_rows(measured),
-        *size_rows(campaign, measured),
-        *time_rows(campaign, measured),
+        *stated.unit_rows(measured),
+        *stated.size_rows(campaign, measured),
+        *stated.time_rows(campaign, measured),
         *_signal_faults(measured),
         check_row("content", "refuse", f"The campaign {NO_FORCE}."),
     ]
@@ -230,7 +205,7 @@ def _faults_of(signal, period, measured, record, channel, what):
     def fault(check, message):
         return warning(check, message, record, channel)
 
-    holes = missing_samples(signal)
+    holes = signal_faults.missing_samples(signal)
     if signal.size == 0 or holes:
         count, first = holes or (0, 0)
         message = (
@@ -257,7 +232,7 @@ def _faults_of(signal, period, measured, record, channel, what):
         )
         return
     # Only the last period of a periodic signal: every peak recurs in each period.
-    share = clipped_share(signal[-period:] if 0 < period < signal.size else signal)
+    share = signal_faults.clipped_share(signal[-period:] if 0 < period < signal.size else signal)
     if share is not None:
         yield fault(
             "clipping",
@@ -266,7 +241,7 @@ def _faults_of(signal, period, measured, record, channel, what):
             f" too small. {what}.",
         )
     still = presses or (channel in measured.forces and blows(signal) > 0)
-    lost = None if still else drop_out(signal, measured.rate, measured.starts_at_rest)
+    lost = None if still else signal_faults.drop_out(signal, measured.rate, measured.starts_at_rest)
     if lost is not None:
         yield fault(
             "drop-outs",
@@ -282,10 +257,10 @@ def _linear(measured, spectra, record):
             yield _not_checked(check, spectra)
         return
     name = measured.records[record]
-    coherence = mean_coherence(spectra)
+    coherence = linear_record.mean_coherence(spectra)
     finite = measured.finite(record)
     best = float(coherence[finite].max())
-    if best < NO_CAUSE:
+    if best < linear_record.NO_CAUSE:
         yield check_row(
             "coherence",
             "refuse",
@@ -304,7 +279,7 @@ def _linear(measured, spectra, record):
             " well.",
             name,
         )
-    apart, common = channel_delays(spectra, measured.kinds, measured.rate, finite)
+    apart, common = linear_record.channel_delays(spectra, measured.kinds, measured.rate, finite)
     late = [
         (channel, f"{channel} {'lags' if lag > 0 else 'leads'} the other channels", lag)
         for channel, lag in ((measured.channels[index], lag) for index, lag in apart.items())
@@ -324,10 +299,10 @@ def _linear(measured, spectra, record):
 
 
 def _mix_ups(measured, spectra, name):
-    for index, other in swap_hints(measured, spectra):
+    for index, other in linear_record.swap_hints(measured, spectra):
         along = measured.channels[index]
         silent = f"{along} lies along the force and does not follow it in record {name} while"
-        if other is None and wakes(measured, index):
+        if other is None and linear_record.wakes(measured, index):
             continue
         if other is None:
             why = {along: f"{silent} others do: it is dead or wrongly named."}
@@ -337,7 +312,7 @@ def _mix_ups(measured, spectra, name):
             why = {along: swapped, across: swapped}
         for channel, message in why.items():
             yield warning("swapped channels", message, name, channel)
-    against = reversed_hint(measured, spectra)
+    against = linear_record.reversed_hint(measured, spectra)
     if against is not None:
         yield warning(
             "swapped channels",
@@ -380,7 +355,7 @@ def _directions(measured):
                 f"The place of {name} is not known: it can not be compared with a model.",
                 channel=name,
             )
-    if not np.isfinite(alignment(measured)).any():
+    if not np.isfinite(linear_record.alignment(measured)).any():
         force = measured.forces[0]
         yield warning("directions", f"The direction of {force} is not known.", channel=force)
 
@@ -398,9 +373,9 @@ def _stationarity(measured, usable, spectra):
         )
         signals = [(measured.forces[0], measured.force[record][0], True), *responses]
         for channel, signal in ((own[0], own[1]) for own in signals if own[2]):
-            trend = level_trend(signal, measured.rate, band, measured.starts_at_rest)
+            trend = signal_faults.level_trend(signal, measured.rate, band, measured.starts_at_rest)
             made = made or trend is not None
-            if is_drifting(trend):
+            if signal_faults.is_drifting(trend):
                 yield warning(
                     "stationarity",
                     f"The level of {channel} {'rises' if trend[0] > 0 else 'falls'} by"

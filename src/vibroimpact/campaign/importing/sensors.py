@@ -35,11 +35,10 @@ class ResolvedSensor:
     @property
     def unit_kind(self) -> str:
         """Return the kind as si_factor knows it."""
-        return unit_kind(self.role, self.channel.kind)
+        return _unit_kind(self.role, self.channel.kind)
 
 
-def unit_kind(role: str, kind: str) -> str:
-    """Return the kind of a sensor as si_factor knows it, of its role and kind."""
+def _unit_kind(role: str, kind: str) -> str:
     return "excitation" if role == "force" and kind != BASE else kind
 
 
@@ -102,7 +101,7 @@ def _resolved(sensor: Sensor, role: str, measured: Measured) -> ResolvedSensor |
         )
     if getattr(sensor, "remove_offset", False):
         signals = [_without_offset(signal) for signal in signals]
-    unit = _unit(sensor, signals, unit_kind(role, kind), measured)
+    unit = _unit(sensor, signals, _unit_kind(role, kind), measured)
     if unit is None or not kind or point is None or direction is None:
         return None
     unit_from = NAME if sensor.unit else first.unit_from
