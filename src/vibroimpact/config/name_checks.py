@@ -120,26 +120,15 @@ def identification_needs(
     identification: ConfigPart,
 ) -> Problems:
     """Yield a problem unless the supports of a tube are identified under a broadband force."""
-    if not supports:
-        yield Problem(
-            "identification",
-            "looks for the equivalent support, and there are no supports: leave identification out",
-            "given",
-        )
-    if structure.kind not in TUBES:
-        yield Problem(
-            "identification",
-            f"reads the equivalent support of a tube, structure.kind is {structure.kind}: leave"
-            " identification out",
-            "given",
-        )
-    elif excitation.kind not in ("band_limited", "measured", "turbulence"):
-        yield Problem(
-            "identification",
-            f"needs a broadband force, excitation.kind is {excitation.kind}: leave"
-            " identification out",
-            "given",
-        )
+    tube, force = structure.kind in TUBES, excitation.kind
+    broadband = force in ("band_limited", "measured", "turbulence")
+    for wrong, told in (
+        (not supports, "looks for the equivalent support, and there are no supports"),
+        (not tube, f"reads the equivalent support of a tube, structure.kind is {structure.kind}"),
+        (tube and not broadband, f"needs a broadband force, excitation.kind is {force}"),
+    ):
+        if wrong:
+            yield Problem("identification", f"{told}: leave identification out", "given")
     if record.every_step:
         yield Problem(
             "record.every_step", "keeps no spectra to identify from: leave identification out"

@@ -12,7 +12,7 @@ from vibroimpact.io.provenance import config_digest
 
 from .schema import Config
 
-# Keys of the reduced model, and of a simulation with it.
+# Keys of the reduced model, of a run with it, of a study's simulation, and of spectra.
 MODEL = (
     "structure",
     "damping",
@@ -33,19 +33,21 @@ MODEL = (
     "record.sensors",
     "record.shape_line",
 )
-SIMULATION = (
+RUN = (
     "study",
     "seed",
     "structure.section",
     "excitation",
     "integration",
     "grid.gap_m",
-    "grid.seeds",
     "record.duration_s",
     "record.sampling_frequency_Hz",
     "record.stress_limit_Pa",
     "record.every_step",
 )
+SIMULATION = (*RUN, "grid.seeds")
+SPECTRA = ("spectra", "identification.lscf", "identification.broadband")
+RESPONSE = ("structure.section", "excitation", "grid.gap_m", "spectra", "identification")
 
 STAGE_KEYS: dict[str, tuple[str, ...]] = {
     "targets": (
@@ -59,55 +61,21 @@ STAGE_KEYS: dict[str, tuple[str, ...]] = {
     ),
     "basis": MODEL,
     "simulate": SIMULATION,
-    "simulate_to_spectra": (
-        *SIMULATION,
-        "spectra",
-        "identification.lscf",
-        "identification.broadband",
-    ),
+    "simulate_to_spectra": (*SIMULATION, *SPECTRA),
     "statistics": ("study",),
-    "spectra": (
-        "study",
-        "excitation",
-        "record.sampling_frequency_Hz",
-        "spectra",
-        "identification.lscf",
-        "identification.broadband",
-    ),
+    "spectra": ("study", "excitation", "record.sampling_frequency_Hz", *SPECTRA),
     "identify": ("structure.section", "excitation", "identification"),
     "consistency": ("study", "grid", "identification"),
     "synthetic_campaign": (
-        "study",
-        "seed",
-        "structure.section",
+        *RUN,
         "points",
-        "excitation",
-        "integration",
-        "grid.gap_m",
-        "record.duration_s",
-        "record.sampling_frequency_Hz",
-        "record.stress_limit_Pa",
-        "record.every_step",
         "overlay.gap_ratio",
         "overlay.noise",
         "overlay.seed",
     ),
     "figures_model": (*MODEL, "grid.gap_m"),
-    "figures_response": (
-        "structure.section",
-        "excitation",
-        "grid.gap_m",
-        "spectra",
-        "identification",
-    ),
-    "figures_identification": (
-        "structure.section",
-        "excitation",
-        "grid.gap_m",
-        "record.shape_line",
-        "spectra",
-        "identification",
-    ),
+    "figures_response": RESPONSE,
+    "figures_identification": (*RESPONSE, "record.shape_line"),
     "figures_checks": (
         "structure.section",
         "integration.imperfection",
