@@ -15,7 +15,6 @@ from .mixture import Mixture, TwoPhaseDamping, given_or_mixed
 from .quantities import (
     By_kind,
     Diameter_m,
-    Fluid_density,
     List,
     Number,
     One,
@@ -26,8 +25,14 @@ from .quantities import (
     Temperature_C,
     Two_axes,
     Unit,
-    Viscosity,
 )
+
+Fluid_density = Annotated[
+    Number, Range("in kg/m3? 1 g/cm3 is 1000", at_least=0, at_most=2e4), Unit("kg/m³")
+]
+Viscosity = Annotated[
+    Number, Range("in Pa s? 1 mPa s is 1.0e-3, 0 for no damping", at_least=0, at_most=100)
+]
 
 Fluid_name = Literal["water", "steam"]
 OR_NAMED = "Null for that of the named fluid."

@@ -192,12 +192,9 @@ class Ascending(Checked):
 Diameter_m = Annotated[Number, Range("in metres? 22.22 mm is 0.02222", above=0, at_most=2)]
 Wall_m = Annotated[Number, Range("in metres? 1.27 mm is 0.00127", above=0, at_most=1)]
 Length_m = Annotated[Number, Range("give the length in metres", above=0, at_most=1000)]
-Height_m = Annotated[Number, Range("in metres? 30 mm is 0.030", above=0, at_most=5)]
-Gap_m = Annotated[Number, Range("give the radial clearance in metres", above=0, at_most=10)]
 Youngs_modulus_Pa = Annotated[
     Number, Range("in Pa? 202 GPa is 2.02e11", at_least=1e6, at_most=1e13)
 ]
-Stress_Pa = Annotated[Number, Range("in Pa? 240 MPa is 240.0e6", at_least=1e4, at_most=1e13)]
 Poisson_ratio = Annotated[Number, Range("0.3 for most metals", at_least=0, below=0.5), Unit("1")]
 Density = Annotated[Number, Range("in kg/m3? 8.33 g/cm3 is 8330", at_least=10, at_most=3e4)]
 Shear_coefficient = Annotated[
@@ -208,16 +205,7 @@ Shear_coefficient = Annotated[
 Area_m2 = Annotated[Number, Range("in m2? 100 mm2 is 1.0e-4", above=0, at_most=4)]
 Second_moment = Annotated[Number, Range("in m4? 1 cm4 is 1.0e-8", above=0, at_most=1)]
 Temperature_C = Annotated[Number, Range("in degrees Celsius", at_least=-273.15, at_most=3000)]
-Fluid_density = Annotated[
-    Number, Range("in kg/m3? 1 g/cm3 is 1000", at_least=0, at_most=2e4), Unit("kg/m³")
-]
-Viscosity = Annotated[
-    Number, Range("in Pa s? 1 mPa s is 1.0e-3, 0 for no damping", at_least=0, at_most=100)
-]
 Stiffness = Annotated[Number, Range("give the stiffness in N/m", above=0, at_most=1e15)]
-Rotation_stiffness = Annotated[
-    Number, Range("give the stiffness in N m/rad", above=0, at_most=1e15)
-]
 Mass_kg = Annotated[Number, Range("give the mass in kg", above=0, at_most=1e9)]
 Positive_factor = Annotated[
     Number, Range("give a positive factor", above=0, at_most=1e6), Unit("1")
@@ -229,22 +217,8 @@ Damping_ratio = Annotated[
     Range("a fraction, not per cent: 1.5 % is 0.015", at_least=0, below=0.3),
     Unit("1"),
 ]
-Force_N = Annotated[Number, Range("give the force in newtons RMS", above=0, at_most=1e6)]
 Frequency_Hz = Annotated[Number, Range("give the frequency in Hz", above=0, at_most=1e7)]
 Lowest_frequency_Hz = Annotated[Number, Range("give the frequency in Hz", at_least=0, at_most=1e7)]
-Duration_s = Annotated[Number, Range("give the duration in seconds", above=0, at_most=1e5)]
-Start_up_s = Annotated[
-    Number, Range("give the duration in seconds, 0 for none", at_least=0, at_most=1e5)
-]
-Fraction_of_gap = Annotated[
-    Number, Range("a small fraction of the gap: 1.0e-6", at_least=0, at_most=0.1), Unit("1")
-]
-Overlap = Annotated[
-    Number,
-    Range("a fraction, not per cent: 65 % is 0.65", at_least=0, at_most=0.95),
-    Unit("1"),
-]
-Angle_deg = Annotated[Number, Range("in degrees: half a turn is 180", above=0, at_most=360)]
 Phase_deg = Annotated[Number, Range("in degrees, between -360 and 360", at_least=-360, at_most=360)]
 
 Name = Annotated[
@@ -262,11 +236,6 @@ Two_axes = Length("give two, of the section's first and second axis", 2)
 Band_Hz = Annotated[
     tuple[Lowest_frequency_Hz, ...],
     Length("give two, the lower end and the upper end in Hz", 2),
-    Ascending("give the lower end first"),
-]
-Stiffness_range = Annotated[
-    tuple[Stiffness, ...],
-    Length("give two, the lowest and the highest stiffness in N/m", 2),
     Ascending("give the lower end first"),
 ]
 Not_empty = Field(min_length=1)

@@ -14,29 +14,24 @@ from .excitation import Excitation
 from .flow import Flow
 from .initial import Initial
 from .quantities import (
+    Ascending,
     Axis,
     Band_Hz,
     Checked,
-    Duration_s,
-    Force_N,
-    Fraction_of_gap,
     Frequency_Hz,
-    Gap_m,
+    Length,
     List,
     Name,
     Not_empty,
     Number,
     One,
     One_or_list,
-    Overlap,
     Pattern,
     Position,
     Positive_factor,
     Range,
     Section,
-    Start_up_s,
-    Stiffness_range,
-    Stress_Pa,
+    Stiffness,
     Unit,
     Whole,
 )
@@ -44,6 +39,27 @@ from .reserved_names import is_reserved
 from .structure import Damping, ModalDamping, Structure
 from .supports import LocalElement, PointMass, Support
 from .wear import Wear
+
+Gap_m = Annotated[Number, Range("give the radial clearance in metres", above=0, at_most=10)]
+Stress_Pa = Annotated[Number, Range("in Pa? 240 MPa is 240.0e6", at_least=1e4, at_most=1e13)]
+Force_N = Annotated[Number, Range("give the force in newtons RMS", above=0, at_most=1e6)]
+Duration_s = Annotated[Number, Range("give the duration in seconds", above=0, at_most=1e5)]
+Start_up_s = Annotated[
+    Number, Range("give the duration in seconds, 0 for none", at_least=0, at_most=1e5)
+]
+Fraction_of_gap = Annotated[
+    Number, Range("a small fraction of the gap: 1.0e-6", at_least=0, at_most=0.1), Unit("1")
+]
+Overlap = Annotated[
+    Number,
+    Range("a fraction, not per cent: 65 % is 0.65", at_least=0, at_most=0.95),
+    Unit("1"),
+]
+Stiffness_range = Annotated[
+    tuple[Stiffness, ...],
+    Length("give two, the lowest and the highest stiffness in N/m", 2),
+    Ascending("give the lower end first"),
+]
 
 LONGEST_NAME = 100  # characters of a study's name; with the name of a case it names files
 

@@ -10,7 +10,6 @@ from .cross_section import Cross_section
 from .fluid import Fluids
 from .material import Material
 from .quantities import (
-    Angle_deg,
     Axis,
     By_kind,
     Coefficient,
@@ -26,13 +25,17 @@ from .quantities import (
     Number,
     Pattern,
     Range,
-    Rotation_stiffness,
     Section,
     Stiffness,
     Unit,
     Vector,
     Whole,
 )
+
+Rotation_stiffness = Annotated[
+    Number, Range("give the stiffness in N m/rad", above=0, at_most=1e15)
+]
+Angle_deg = Annotated[Number, Range("in degrees: half a turn is 180", above=0, at_most=360)]
 
 
 class Mesh(Section):

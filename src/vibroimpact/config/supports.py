@@ -9,7 +9,6 @@ from .quantities import (
     Coefficient,
     Damping_ratio,
     Direction,
-    Height_m,
     List,
     Mass_kg,
     Name,
@@ -27,6 +26,8 @@ from .quantities import (
     Vector,
     Whole,
 )
+
+Height_m = Annotated[Number, Range("in metres? 30 mm is 0.030", above=0, at_most=5)]
 
 Friction = Annotated[
     Number,
