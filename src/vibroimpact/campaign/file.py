@@ -1,35 +1,22 @@
 """The campaign file: measured forces and responses at several levels and gaps, in netCDF-4.
 
-Dimensions: record, channel, force_channel, time; xyz and support if used.
+contract.DECLARED lists the variables: dimensions, units, whether they are needed. In addition:
 
-Required variables:
-
-- force (record, force_channel, time): N, or force_channel_units (force_channel); an acceleration
-  if force_channel_kind says base_acceleration
-- response (record, channel, time): channel_units (channel), any UDUNITS text
-- channel_kind (channel): acceleration, velocity, displacement, contact_force (of the support at
+- force is in force_channel_units, else in its own attribute units or in N; an acceleration if
+  force_channel_kind says base_acceleration: of all that holds the structure, positive along
+  force_channel_direction; force_channel_point is of no account then
+- response is in channel_units, any UDUNITS text
+- channel_kind: acceleration, velocity, displacement, contact_force (of the support at
   channel_point on the structure, the sum over its contact points), strain (along a tube, by its
   bending, of the outer fibre at channel_point; channel_direction is the outward normal there) or
   generic
-- channel_name (channel), channel_point (channel, xyz) m
-- channel_direction (channel, xyz): unit vector of the positive sense
-- force_channel_name, force_channel_point, force_channel_direction: the same for forces
-- gap (record): m, NaN if there is none
-
-Variables filled in if they are missing (see fill_missing):
-
-- record_name (record), repeat (record), split (record): fit or holdout
-- load_rms (record): N, or m s-2 if that is a base acceleration: RMS of force channel 0 about its
-  mean over the valid samples, see load_of
-
-Optional variables:
-
-- force_channel_kind (force_channel): force, or base_acceleration of all that holds the structure,
-  positive along force_channel_direction; force_channel_point is of no account then
-- support_gap (record, support): m
-- voltage (record, time): V
-- noise_floor_rms (channel): in the unit of the channel
-- valid_samples (record): number of samples that count; the rest is NaN
+- channel_direction: unit vector of the positive sense
+- gap: NaN if there is none
+- split: fit or holdout
+- load_rms: N, or m s-2 if that is a base acceleration: RMS of force channel 0 about its mean over
+  the valid samples, see load_of
+- noise_floor_rms: in the unit of the channel
+- valid_samples: number of samples that count; the rest is NaN
 
 Attributes: sampling_frequency (Hz), antialias, start_up, period_samples (0 if not periodic),
 transient_periods, source, band_Hz (low, high: the band of the analysis; by default the band that

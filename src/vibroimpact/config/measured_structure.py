@@ -18,13 +18,12 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
+def _is_list(value: Any, holds: Callable[[Any], bool]) -> bool:
+    return isinstance(value, list) and all(map(holds, value))
+
+
 def _is_band(value: Any) -> bool:
-    return (
-        isinstance(value, list)
-        and len(value) == 2
-        and all(map(_is_number, value))
-        and 0.0 <= value[0] < value[1]
-    )
+    return _is_list(value, _is_number) and len(value) == 2 and 0.0 <= value[0] < value[1]
 
 
 def _is_place_name(value: Any) -> bool:
@@ -32,24 +31,15 @@ def _is_place_name(value: Any) -> bool:
 
 
 def _are_coefficients(value: Any) -> bool:
-    return (
-        isinstance(value, dict)
-        and bool(value)
-        and all(map(_is_number, value.values()))
-        and any(value.values())
-    )
+    return isinstance(value, dict) and all(map(_is_number, value.values())) and any(value.values())
 
 
 def _are_names(value: Any) -> bool:
     return isinstance(value, list) and len(set(map(str, value))) == len(value)
 
 
-def _are_two_flags(value: Any) -> bool:
-    return (
-        isinstance(value, list)
-        and len(value) == 2
-        and all(isinstance(each, bool) for each in value)
-    )
+def _is_flag(value: Any) -> bool:
+    return isinstance(value, bool)
 
 
 def only(holds: Callable[[Any], bool], rule: str) -> BeforeValidator:
@@ -112,11 +102,11 @@ Laws_or_none = Annotated[tuple[Law_at_place, ...], only(_are_names, A_LIST)]
 Two_flags = Annotated[
     tuple[bool, bool],
     only(
-        _are_two_flags,
+        lambda value: _is_list(value, _is_flag) and len(value) == 2,
         "must be two of true and false, for modes below and above the band, as in [true, true]",
     ),
 ]
-Flag = Annotated[bool, only(lambda value: isinstance(value, bool), "must be true or false")]
+Flag = Annotated[bool, only(_is_flag, "must be true or false")]
 Emphasis = Annotated[
     float,
     Unit("1"),

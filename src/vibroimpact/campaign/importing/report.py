@@ -61,10 +61,7 @@ def import_text(
         gap = f"gap {gaps[record] * 1e3:.4g} mm" if gaps[record] == gaps[record] else "no gap"
         lines += [
             f"Record {name}: {sensors[0]['samples']} samples, {sensors[0]['duration_s']:.4g} s,"
-            f" {load}, {gap},"
-            f" {campaign['split'].values[record]}"
-        ]
-        lines += [
+            f" {load}, {gap}, {campaign['split'].values[record]}",
             *_table(sensors),
             *(f"  {row['sensor']}: {row['note']}" for row in sensors if row["note"]),
             "",

@@ -161,20 +161,14 @@ def _numbers(path, lines, columns, separator):
     """
     names, empty = columns
     wanted = [index for index in range(len(names)) if index not in empty]
-    if any(len(line.split(separator)) != len(names) for _, line in lines):
-        raise ImportProblem("\n".join(_faults(path, lines, columns, separator)))
+    rows = [line for _, line in lines]
     try:
-        return np.loadtxt(
-            [line for _, line in lines],
-            delimiter=separator,
-            comments=None,
-            ndmin=2,
-            usecols=wanted,
-        )
+        if any(len(row.split(separator)) != len(names) for row in rows):
+            raise ValueError("lines of several lengths")
+        return np.loadtxt(rows, delimiter=separator, comments=None, ndmin=2, usecols=wanted)
     except ValueError as error:
-        raise ImportProblem(
-            "\n".join(_faults(path, lines, columns, separator)) or f"{path}: no table ({error})"
-        ) from error
+        faults = _faults(path, lines, columns, separator)
+        raise ImportProblem("\n".join(faults) or f"{path}: no table ({error})") from error
 
 
 def _faults(path, lines, columns, separator):
