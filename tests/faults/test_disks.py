@@ -13,7 +13,7 @@ import xarray as xr
 
 from tests.faults.runs import Runs, bits
 from tests.support.tiny_study import ROOT, TinyStudy, tiny_values
-from vibroimpact.io.records import RecordError, RecordFile, write_cells, write_record, write_text
+from vibroimpact.io.records import RecordError, record_file, write_cells, write_record, write_text
 from vibroimpact.io.whole_file import problem_of, whole_file
 from vibroimpact_workflow.run_lock import take_folder
 
@@ -26,10 +26,10 @@ SERIES = xr.Dataset({"force": ("time", MILLION)})
 def write_series_in_pieces(path):
     """Write a record as the simulation does, while it goes on."""
     parts = {"force": (("time",), "f8", {})}
-    with RecordFile(path, xr.Dataset({"level": 1.0}), parts, {"time": MILLION.size}) as file:
+    with record_file(path, xr.Dataset({"level": 1.0}), parts, {"time": MILLION.size}) as put:
         for first in range(0, MILLION.size, 8192):
             piece = slice(first, min(first + 8192, MILLION.size))
-            file.put("force", piece, MILLION[piece])
+            put("force", piece, MILLION[piece])
 
 
 def write_picture(path):

@@ -48,9 +48,9 @@ def test_file_written_in_pieces_equals_the_whole(tmp_path):
         {"case": "one"},
     )
     parts = {"series": (("point", "time"), "f4", {"units": "m"})}
-    with records.RecordFile(tmp_path / "pieces.nc", whole.drop_vars("series"), parts) as file:
+    with records.record_file(tmp_path / "pieces.nc", whole.drop_vars("series"), parts) as put:
         for place in (slice(0, 4), slice(4, 6)):
-            file.put("series", np.s_[:, place], values[:, place])
+            put("series", np.s_[:, place], values[:, place])
         assert not (tmp_path / "pieces.nc").exists()
     again = records.read_record(tmp_path / "pieces.nc")
     assert again.equals(whole) and again.attrs["case"] == "one"
@@ -102,7 +102,7 @@ def test_some_variables_of_a_file_come_with_their_coordinates(tmp_path):
 
 def test_unfinished_file_is_removed(tmp_path):
     with pytest.raises(RuntimeError, match="stopped"):
-        with records.RecordFile(tmp_path / "half.nc", xr.Dataset({"a": 1.0})):
+        with records.record_file(tmp_path / "half.nc", xr.Dataset({"a": 1.0})):
             raise RuntimeError("stopped")
     assert list(tmp_path.iterdir()) == []
 

@@ -5,10 +5,9 @@ import io
 import math
 import os
 import re
-import sys
 import warnings
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import ExitStack, closing, contextmanager
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import closing, contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -38,63 +37,49 @@ FORMULA = re.compile(r"'*[=+\-@\t\r].")  # how a cell begins that a spreadsheet 
 def write_record(dataset: xr.Dataset, path: str | Path, names_kept: bool = False) -> None:
     """Write a dataset of numbers and texts as netCDF-4.
 
-    names_kept: as in RecordFile.
+    names_kept: as in record_file.
 
     The file appears complete or not at all. Raises TypeError for other contents, RecordError if
     the folder cannot be written or is full.
     """
-    with RecordFile(path, dataset, names_kept=names_kept):
+    with record_file(path, dataset, names_kept=names_kept):
         pass
 
 
-class RecordFile:
-    """A netCDF-4 file that is written piece by piece inside a `with` block.
+@contextmanager
+def record_file(
+    path: str | Path,
+    dataset: xr.Dataset,
+    parts: dict[str, tuple] | None = None,
+    sizes: dict[str, int] | None = None,
+    names_kept: bool = False,
+) -> Iterator[Callable[[str, Any, np.ndarray], None]]:
+    """Create a netCDF-4 file that is written piece by piece inside a `with` block, which is given
+    put(name of a part, index or slices, values).
+
+    dataset: variables of numbers and texts, written at once.
+    parts: {name: (dimensions, type, attributes)} of the variables that `put` fills later.
+    sizes: {dimension: length} of dimensions that only the parts have.
+    names_kept: write all names as they are. Otherwise labels of a dimension and the time get the
+        names that CF asks for, support_name and elapsed_time, which read_record undoes.
 
     It has a temporary name in the same folder until the end of the block, and is then renamed. If
     the block raises, no file remains, see whole_file. Time series of float32 are not compressed:
     their noise does not shrink, and compression takes longer than the simulation.
     `Dataset.to_netcdf` is not used because it takes twice as long for files of many small
-    variables.
+    variables. Raises TypeError for a variable that holds neither numbers nor texts, RecordError if
+    the folder cannot be written or is full.
     """
-
-    def __init__(
-        self,
-        path: str | Path,
-        dataset: xr.Dataset,
-        parts: dict[str, tuple] | None = None,
-        sizes: dict[str, int] | None = None,
-        names_kept: bool = False,
-    ) -> None:
-        """Create the file and write the contents that are known from the start.
-
-        dataset: variables of numbers and texts, written at once.
-        parts: {name: (dimensions, type, attributes)} of the variables that `put` fills later.
-        sizes: {dimension: length} of dimensions that only the parts have.
-        names_kept: write all names as they are. Otherwise labels of a dimension and the time get
-            the names that CF asks for, support_name and elapsed_time, which read_record undoes.
-
-        Raises TypeError for a variable that holds neither numbers nor texts, RecordError if the
-        folder cannot be written or is full.
-        """
-        self._names = {} if names_kept else _names_in_file(dataset)
-        self._open = ExitStack()
-        try:
-            temporary = self._open.enter_context(whole_file(path))
-            self._file = netCDF4.Dataset(temporary, "w", format="NETCDF4")
-            self._open.enter_context(closing(self._file))
-            self._create(dataset, parts or {}, sizes or {})
-        except BaseException:
-            self._open.__exit__(*sys.exc_info())
-            raise
-
-    def _create(self, dataset: xr.Dataset, parts: dict, sizes: dict) -> None:
-        """Create dimensions, variables and attributes, and write the variables of the dataset."""
-        self._file.set_fill_off()
-        lengths: dict = {**dataset.sizes, **sizes}
-        for name, size in lengths.items():
-            self._file.createDimension(_dimension(str(name), self._names), size)
-        unnamed = _put_variables(self._file, dataset, parts, self._names)
-        self._file.setncatts(
+    names = {} if names_kept else _names_in_file(dataset)
+    with (
+        whole_file(path) as temporary,
+        closing(netCDF4.Dataset(temporary, "w", format="NETCDF4")) as file,
+    ):
+        file.set_fill_off()
+        for name, size in {**dataset.sizes, **(sizes or {})}.items():
+            file.createDimension(_dimension(str(name), names), size)
+        unnamed = _put_variables(file, dataset, parts or {}, names)
+        file.setncatts(
             {
                 "title": "vibroimpact record",
                 **dataset.attrs,
@@ -104,15 +89,10 @@ class RecordFile:
             }
         )
 
-    def put(self, name: str, place: Any, values: np.ndarray) -> None:
-        """Write values into a part, at an index or slices."""
-        self._file[name][place] = values
+        def put(name: str, place: Any, values: np.ndarray) -> None:
+            file[name][place] = values
 
-    def __enter__(self) -> "RecordFile":
-        return self
-
-    def __exit__(self, kind: Any, error: Any, trace: Any) -> bool | None:
-        return self._open.__exit__(kind, error, trace)
+        yield put
 
 
 def _names_in_file(dataset: xr.Dataset) -> dict[str, str]:
@@ -139,7 +119,11 @@ def _put_variables(
 
     Returns the auxiliary coordinates that no variable refers to.
     """
-    auxiliary = _auxiliary(dataset, names)
+    auxiliary = {  # {name in the file: dimensions} of coordinates whose name is not a dimension's
+        names.get(str(name), name): set(dataset[name].dims)
+        for name in dataset.coords
+        if name not in dataset.sizes or (name in names and name != TIME)
+    }
     named: set[str] = set()
     for name, variable in dataset.variables.items():
         values = variable.values
@@ -164,15 +148,6 @@ def _create(file, name, dtype, dims, attributes):
     stored.setncatts(attributes)
     stored.set_auto_maskandscale(False)
     return stored
-
-
-def _auxiliary(dataset: xr.Dataset, names: dict[str, str]) -> dict:
-    """Return {name in the file: dimensions} of the coordinates whose name is not a dimension's."""
-    return {
-        names.get(str(name), name): set(dataset[name].dims)
-        for name in dataset.coords
-        if name not in dataset.sizes or (name in names and name != TIME)
-    }
 
 
 def _is_text(name: str, values: np.ndarray) -> bool:

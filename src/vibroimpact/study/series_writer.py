@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.integration.batch import Schedule
-from vibroimpact.io.records import RecordFile, write_record
+from vibroimpact.io.records import record_file, write_record
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .cases import Case
@@ -49,11 +49,11 @@ def series_writer(config: Any, model: ModalModel, paths: dict, attributes: dict)
             parts[name] = (dims, dtype, {"units": units, "long_name": long_name})
         waiting: list[dict[str, np.ndarray]] = []
         with ExitStack() as open_files:
-            files = []
+            puts = []
             for case in batch:
                 own = head.assign_attrs(case_attributes(config, schedule, case) | attributes)
-                file = RecordFile(paths[case], own, parts, {"direction": 2})
-                files.append(open_files.enter_context(file))
+                file = record_file(paths[case], own, parts, {"direction": 2})
+                puts.append(open_files.enter_context(file))
 
             def put(first: int, series: dict[str, np.ndarray]) -> None:
                 waiting.append({name: values.copy() for name, values in series.items()})
@@ -63,8 +63,8 @@ def series_writer(config: Any, model: ModalModel, paths: dict, attributes: dict)
                     return
                 for name in SERIES:
                     whole = np.concatenate([piece[name] for piece in waiting], axis=-1)
-                    for file, values in zip(files, whole, strict=True):
-                        file.put(name, np.s_[..., last - held : last], values)
+                    for write, values in zip(puts, whole, strict=True):
+                        write(name, np.s_[..., last - held : last], values)
                 waiting.clear()
 
             yield put

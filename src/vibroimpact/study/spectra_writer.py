@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.integration.batch import Schedule
-from vibroimpact.io.records import RecordFile
+from vibroimpact.io.records import record_file
 from vibroimpact.io.stopwatch import Stopwatch
 from vibroimpact.reduction.modal_model import ModalModel
 
@@ -45,8 +45,8 @@ def spectra_writer(
                 head = spectra.head.assign_attrs(
                     case_attributes(config, schedule, case) | spectra.head.attrs | attributes
                 )
-                file = RecordFile(paths[case], head, spectra.parts, spectra.sizes)
-                spectra.write = open_files.enter_context(file).put
+                file = record_file(paths[case], head, spectra.parts, spectra.sizes)
+                spectra.write = open_files.enter_context(file)
                 spectra_of_batch.append(spectra)
 
             def put(first: int, series: dict[str, np.ndarray]) -> None:
