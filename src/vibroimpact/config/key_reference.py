@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import groupby
 
 from .declared_keys import DeclaredKey, declared, kind_of, meaning_of
 from .measured_structure import MeasuredStructure
@@ -64,8 +63,11 @@ def markdown() -> str:
     section with a `kind`, the kind precedes the key: `supports.profile.lobes.depth_m`.
     """
     parts = [INTRODUCTION]
-    for place, sections in groupby(_by_place(), key=lambda section: section.place):
-        parts += _at_place(place, list(sections))
+    places: dict[str, list[DeclaredSection]] = {}
+    for section in declared_sections():
+        places.setdefault(section.place, []).append(section)
+    for place, sections in places.items():
+        parts += _at_place(place, sections)
     # Of a file that states a structure to be identified from its campaign.
     measured = next(_sections(MeasuredStructure, "model.structure"))
     parts += [
@@ -81,13 +83,6 @@ def anchor(section: DeclaredSection, key: str = "") -> str:
     """Return the anchor of a section, or of one of its keys."""
     parts = (section.place.replace("[]", ""), section.kind, key)
     return ".".join(filter(None, parts)) or "top-level"
-
-
-def _by_place() -> list[DeclaredSection]:
-    """Return the sections with those of the same place side by side."""
-    sections = declared_sections()
-    places = list(dict.fromkeys(section.place for section in sections))
-    return sorted(sections, key=lambda section: places.index(section.place))
 
 
 def _at_place(place: str, sections: list[DeclaredSection]) -> list[str]:

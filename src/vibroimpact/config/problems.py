@@ -73,10 +73,15 @@ def sentence(error: Mapping[str, Any], data: Any, whole: type[Section]) -> str:
         return f"{place} = {shown(value)} " + (
             "must not be empty" if least == 1 else f"has too few values: give {least} or more"
         )
-    text = PLAIN_WORDS.get(error["type"]) or error["msg"].replace("Input should be", "must be")
+    text = in_words(error)
     if "[key]" in error["loc"]:
         return f"the key of {place} {text}"
     return f"{place} = {shown(value)} {text}"
+
+
+def in_words(error: Mapping[str, Any]) -> str:
+    """Return what a pydantic error says of a value, as the end of a sentence."""
+    return PLAIN_WORDS.get(error["type"]) or error["msg"].replace("Input should be", "must be")
 
 
 def follows(error: Mapping[str, Any]) -> bool:

@@ -12,7 +12,7 @@ from pydantic import Field, ValidationError
 
 from vibroimpact.campaign.file import Kind
 from vibroimpact.campaign.force_kinds import ForceKind
-from vibroimpact.config.problems import PLAIN_WORDS, ConfigError, follows, shown
+from vibroimpact.config.problems import ConfigError, follows, in_words, shown
 from vibroimpact.config.quantities import (
     Band_Hz,
     Frequency_Hz,
@@ -258,5 +258,4 @@ def _sentence(path: str | Path, error: Mapping, data: Any) -> str:
         return f"{path}: {place} is missing: docs/bring_your_own.md shows it"
     if error["type"] == "extra_forbidden":
         return f"{path}: unknown key {place}: docs/bring_your_own.md shows those there are"
-    text = PLAIN_WORDS.get(error["type"]) or error["msg"].replace("Input should be", "must be")
-    return f"{path}: {place} = {shown(value)} {text}"
+    return f"{path}: {place} = {shown(value)} {in_words(error)}"

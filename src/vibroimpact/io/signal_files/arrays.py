@@ -61,7 +61,11 @@ def signals_of_arrays(arrays: Arrays) -> list[Signal]:
         rate, notes, start = stated, [arrays.note], None
         if time is not None and time.size == longest:
             rows, rate, how = even_samples(time, rows, f"{arrays.path}, {name}")
-            _require_same(arrays.path, stated, rate, stamps)
+            if stated is not None and abs(stated - rate) > SAME_RATE * rate:
+                raise ImportProblem(
+                    f"{arrays.path}: its sampling frequency is {stated:g} Hz, but the steps of"
+                    f" {stamps} say {rate:g} Hz: correct the one that is wrong"
+                )
             notes.append(how)
             start = float(time[0])
         for index, row in enumerate(rows):
@@ -125,14 +129,6 @@ def _seconds(arrays, name):
         return np.ravel(arrays.columns[name]).astype(float) * si_factor(unit, "time")
     except UnitError as error:
         raise ImportProblem(f"{arrays.path}, {name} {error}") from error
-
-
-def _require_same(path, stated, rate, stamps):
-    if stated is not None and abs(stated - rate) > SAME_RATE * rate:
-        raise ImportProblem(
-            f"{path}: its sampling frequency is {stated:g} Hz, but the steps of {stamps} say"
-            f" {rate:g} Hz: correct the one that is wrong"
-        )
 
 
 def _rows(values):
