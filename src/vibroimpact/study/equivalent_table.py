@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from .method_agreement import COMPARED, Span, compared_spans, verdict
-from .reasons import NOT_MOVED, damping_reason, stiffness_reason
+from .reasons import NOT_MOVED, bound_text, reason
 
 EQUIVALENT_COLUMNS = (
     *("gap_m", "load_rms_N", "load_over_gap", "group", "direction"),
@@ -71,24 +71,27 @@ def _row(place: tuple, methods: dict[str, dict], several: bool, shape_needed: bo
     bound = (
         np.nan if np.isfinite(k[0]) or agreement["k"] == "differ" else _bound(methods, spans["k"])
     )
+    reasons = {
+        quantity: reason(quantity, methods, spans[quantity], agreement[quantity])
+        for quantity in "kc"
+    }
+    touching = next(iter(methods.values())).get("contact_fraction", np.nan)
+    if np.isfinite(bound):
+        reasons["k"] = bound_text(bound, float(touching))
     secant = methods.get("secant", {"k_median": np.nan, "c_median": np.nan})
     row = _empty(place, "") | {
         "secant_k_N_per_m": secant["k_median"],
         "secant_c_N_s_per_m": secant["c_median"],
         "agreement_k": agreement["k"],
         "agreement_c": agreement["c"] if np.isfinite(k[0]) else "unresolved",
-        "reason_k": stiffness_reason(methods, spans["k"], agreement["k"], bound),
+        "reason_k": reasons["k"],
+        "reason_c": reasons["c" if np.isfinite(k[0]) else "k"],
         "flag": _flags(methods),
         "k_bound": bound,
-        "contact_fraction": next(iter(methods.values())).get("contact_fraction", np.nan),
+        "contact_fraction": touching,
     }
     row |= dict(zip(("k_N_per_m", "k_low", "k_high"), k, strict=True))
     row |= dict(zip(("c_N_s_per_m", "c_low", "c_high"), c, strict=True))
-    row["reason_c"] = (
-        damping_reason(methods, spans["c"], agreement["c"])
-        if np.isfinite(k[0])
-        else row["reason_k"]
-    )
     return row
 
 

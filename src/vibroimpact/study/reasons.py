@@ -36,28 +36,13 @@ def bound_text(bound: float, touching: float) -> str:
     return f"{text}too soft to tell from no support, though the tube touches {share}"
 
 
-def stiffness_reason(
-    methods: Mapping[str, dict], spans: Mapping[str, Span], agreement: str, bound: float
-) -> str:
-    """Return why there is no k, or a remark on it; empty if all methods agree.
-
-    methods: {method: row of consistency_summary.csv}; spans: of the compared ones.
-    bound: N/m, the upper bound of k; NaN if that is not known.
-    """
-    if np.isfinite(bound):
-        touching = next(iter(methods.values())).get("contact_fraction", np.nan)
-        return bound_text(bound, float(touching))
-    return _reason("k", methods, spans, agreement)
-
-
-def damping_reason(methods: Mapping[str, dict], spans: Mapping[str, Span], agreement: str) -> str:
-    """Return why there is no c, or a remark on it; empty if both methods agree."""
-    return _reason("c", methods, spans, agreement)
-
-
-def _reason(
+def reason(
     quantity: str, methods: Mapping[str, dict], spans: Mapping[str, Span], agreement: str
 ) -> str:
+    """Return why there is no k or c, or a remark on it; empty if the methods agree.
+
+    methods: {method: row of consistency_summary.csv}; spans: of the compared ones.
+    """
     if agreement == "agree":
         return _weakness(methods, spans) if quantity == "k" else ""
     found = {name: span for name, span in spans.items() if np.isfinite(span[0])}
