@@ -98,9 +98,8 @@ def check_campaign(campaign: xr.Dataset) -> list[dict]:
     rows += base_motion_rows(measured)
     measured = relative_to_base(measured)
     record = measured.lowest()
-    spectra = "no record has a force and a response without holes"
-    if record is not None:
-        spectra = transfer_or_reason(measured, record)
+    without = "no record has a force and a response without holes"
+    spectra = without if record is None else transfer_or_reason(measured, record)
     rows += [
         *stated.load_rows(campaign, measured),
         *_linear(measured, spectra, record),
