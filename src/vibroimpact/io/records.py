@@ -76,7 +76,8 @@ def record_file(
         closing(netCDF4.Dataset(temporary, "w", format="NETCDF4")) as file,
     ):
         file.set_fill_off()
-        for name, size in {**dataset.sizes, **(sizes or {})}.items():
+        lengths: dict = {**dataset.sizes, **(sizes or {})}
+        for name, size in lengths.items():
             file.createDimension(_dimension(str(name), names), size)
         unnamed = _put_variables(file, dataset, parts or {}, names)
         file.setncatts(
