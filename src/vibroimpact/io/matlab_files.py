@@ -5,21 +5,16 @@ takes the memory that they claim. The format: "MAT-File Format", The MathWorks, 
 edition for version 7.
 """
 
-from __future__ import annotations
-
 import math
 import struct
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from .foreign_arrays import ForeignFileError, refused_if_damaged, require_once, require_size
-
-if TYPE_CHECKING:
-    from scipy import sparse
 
 HEADER, TAG = 128, 8  # bytes
 VERSION_73 = (b"\0\2IM", b"\2\0MI")  # how the header of an HDF5 file of MATLAB ends
@@ -225,8 +220,8 @@ def _numbers(name: str, kind: int, content: memoryview, array_class: int, order:
 
 def _sparse(
     name: str, shape: tuple[int, ...], rows: np.ndarray, starts: np.ndarray, values: np.ndarray
-) -> sparse.csc_array:
-    """Return a matrix from the rows of its values and the index at which each column starts."""
+) -> Any:
+    """Return a sparse matrix from the rows of its values and the start index of each column."""
     from scipy import sparse
 
     count = int(starts[-1]) if len(starts) else -1

@@ -3,8 +3,6 @@
 The library is imported when the command runs, so that `--help` answers at once.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Sequence
@@ -87,7 +85,7 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _wear(options: argparse.Namespace, configuration: Path) -> Wear:
+def _wear(options: argparse.Namespace, configuration: Path) -> "Wear":
     """Return the section `wear` of a configuration, with the arguments in place of its keys.
 
     Raises NoWear for a value out of range, ConfigError.
@@ -115,7 +113,7 @@ def _wear(options: argparse.Namespace, configuration: Path) -> Wear:
         ) from error
 
 
-def as_text(rows: Sequence[WearRow], years: float) -> str:
+def as_text(rows: "Sequence[WearRow]", years: float) -> str:
     """Return the land that wears deepest at each gap and load, as text."""
     from .life import deepest
 
@@ -125,7 +123,7 @@ def as_text(rows: Sequence[WearRow], years: float) -> str:
     return "\n".join([f"The land that wears deepest, after {years:g} years:", *lines])
 
 
-def _cells(rows: Sequence[WearRow]) -> tuple[str, ...]:
+def _cells(rows: "Sequence[WearRow]") -> tuple[str, ...]:
     """Return the texts of one support; rows: one for each coefficient."""
     first = rows[0]
     times = sorted(row.years_to_limit for row in rows)
