@@ -2,34 +2,24 @@
 what files do not say is asked for.
 """
 
-import shutil
 from pathlib import Path
 
-import h5py
 import numpy as np
 import pytest
 import pyuff
 import scipy.io
-import xarray as xr
 import yaml
 
+from tests.support.universal_file import UNCLOSED, dataset_58
 from vibroimpact.campaign.checks.file_checks import check_campaign, refused
 from vibroimpact.campaign.file import channel_signal, force_signal, read_campaign, write_campaign
 from vibroimpact.campaign.importing.assemble import import_folder
 from vibroimpact.campaign.importing.draft import checked_folder
 from vibroimpact.campaign.importing.report import import_text
 from vibroimpact.campaign.importing.uff import read_uff
-from vibroimpact.io.records import write_record
 from vibroimpact.io.signal_files.signals import ImportProblem, even_samples
 
-# pyuff leaves the file that it writes a binary set to unclosed; nothing here writes universal files
-# but this test.
-pytestmark = [
-    pytest.mark.filterwarnings(
-        "ignore:Exception ignored in.*uff:pytest.PytestUnraisableExceptionWarning"
-    ),
-    pytest.mark.filterwarnings("ignore:unclosed file.*uff:ResourceWarning"),
-]
+pytestmark = UNCLOSED
 
 DATA = Path(__file__).parents[2].parent / "shared" / "data"
 RATE, SAMPLES = 512.0, 3000
@@ -107,16 +97,6 @@ def write_mat5(folder, signals):
     sidecar(folder, "mat")
 
 
-def write_mat73(folder, signals):
-    for level, (force, *responses) in signals.items():
-        with h5py.File(
-            folder / f"{level}.mat", "w", userblock_size=512
-        ) as file:  # MATLAB's arrays lie transposed in the file
-            file["F"], file["A"], file["Fs"] = force[None], np.array(responses), np.array([[RATE]])
-            file.create_group("#refs#")["a"] = np.arange(SAMPLES)
-    sidecar(folder, "mat")
-
-
 def write_csv(folder, signals):
     for level, rows in signals.items():
         lines = [
@@ -141,56 +121,28 @@ def write_csv(folder, signals):
     )
 
 
-def write_netcdf(folder, signals):
-    for level, (force, *responses) in signals.items():
-        write_record(
-            xr.Dataset(
-                {
-                    "F": ("time", force, {"units": "lbf"}),
-                    "A": (("sensor", "time"), np.array(responses)),
-                },
-                attrs={"sampling_frequency": RATE},
-            ),
-            folder / f"{level}.nc",
-        )
-    sidecar(folder, "nc")
-
-
-def uff_set(values, direction, kind, label, binary, even, number=1, node=7):
+def uff_set(values, direction, kind, label, number=1, node=7, **stated):
     """A dataset 58 of a time record."""
+    names = {"rsp_ent_name": f"S{number}", "id1": f"signal {number}"}
+    units = {"ordinate_spec_data_type": kind, "ordinate_axis_units_lab": label}
     time = np.arange(values.size) / RATE
-    return pyuff.prepare_58(
-        binary=binary,
-        func_type=1,
-        rsp_node=node,
-        rsp_dir=direction,
-        rsp_ent_name=f"S{number}",
-        ref_node=0,
-        ref_dir=0,
-        data=values,
-        x=time,
-        ord_data_type=4,
-        abscissa_spacing=int(even),
-        abscissa_min=0.0,
-        abscissa_inc=1.0 / RATE,
-        num_pts=values.size,
-        z_axis_value=0.0,
-        abscissa_spec_data_type=17,
-        ordinate_spec_data_type=kind,
-        ordinate_axis_units_lab=label,
-        abscissa_axis_units_lab="s",
-        id1=f"signal {number}",
-        load_case_id=0,
-        orddenom_spec_data_type=0,
-    )
+    return dataset_58(values, time, node, direction, **names, **units, **stated)
 
 
-def write_uff(folder, signals, binary=1, even=True):
+def write_uff(folder, signals):
     for level, rows in signals.items():
         file = pyuff.UFF(str(folder / f"{level}.uff"))
         file.write_sets(
             [
-                uff_set(values, direction, kind, label, binary, even, number, node)
+                uff_set(
+                    values,
+                    direction,
+                    kind,
+                    label,
+                    number,
+                    node,
+                    binary=1,
+                )
                 for number, (values, direction, kind, label, node) in enumerate(
                     zip(
                         rows,
@@ -216,18 +168,8 @@ def write_uff(folder, signals, binary=1, even=True):
     sidecar(folder, "uff", forces=sensors[:1], channels=sensors[1:])
 
 
-WRITERS = {
-    "MATLAB v5": write_mat5,
-    "MATLAB v7.3": write_mat73,
-    "CSV": write_csv,
-    "netCDF": write_netcdf,
-    "UFF 58 binary": write_uff,
-    "UFF 58 ASCII": lambda folder, signals: write_uff(folder, signals, binary=0),
-    "UFF 58 ASCII, uneven": lambda folder, signals: write_uff(
-        folder, signals, binary=0, even=False
-    ),
-    "UFF 58 binary, uneven": lambda folder, signals: write_uff(folder, signals, even=False),
-}
+# Other forms of these files, and netCDF, are read in tests/properties/test_raw_measurements.
+WRITERS = {"MATLAB v5": write_mat5, "CSV": write_csv, "UFF 58 binary": write_uff}
 
 
 @pytest.mark.parametrize("kind", WRITERS)
@@ -272,8 +214,8 @@ def test_every_format_gives_the_same_campaign(kind, signals, tmp_path):
         ("lbf", "N"),
         ("g", "m s-2"),
     ]
-    assert rows[0]["unit_from"] == {"CSV": "header of the file", "netCDF": "campaign.yaml"}.get(
-        kind, "label of dataset 58" if "UFF" in kind else "campaign.yaml"
+    assert rows[0]["unit_from"] == {"CSV": "header of the file", "MATLAB v5": "campaign.yaml"}.get(
+        kind, "label of dataset 58"
     )
     text = import_text(tmp_path, campaign, rows, check_campaign(campaign))
     assert "lbf" in text and "4.448" in text and "Record high: 3000 samples" in text
@@ -326,25 +268,6 @@ def test_missing_information_is_requested_at_once(signals, tmp_path):
         "shaker has the unit 'm', which is no excitation",
     ):
         assert part in told, told
-
-
-def test_sidecar_errors_name_their_place(signals, tmp_path):
-    write_mat5(tmp_path, signals)
-    sidecar(
-        tmp_path,
-        "mat",
-        start_up="asleep",
-        sampling_frequency=512,
-        records=[{"name": "low", "split": "train"}],
-    )
-    with pytest.raises(ImportProblem) as refusal:
-        import_folder(tmp_path)
-    for part in (
-        "start_up = 'asleep' must be 'rest' or 'stationary'",
-        "unknown key sampling_frequency",
-        "records[0].split = 'train' must be",
-    ):
-        assert part in str(refusal.value)
 
 
 def test_conflicting_sampling_rates_are_reported(signals, tmp_path):
@@ -430,8 +353,8 @@ def test_universal_file_gives_units_and_places(signals, tmp_path):
                 z=[1.640419948, 0.0],
                 return_full_dict=True,
             ),
-            uff_set(signals["low"][0], 2, 13, "NONE", 0, True, 0, 1),
-            uff_set(signals["low"][1], -1, 12, "NONE", 0, True, 1, 2),
+            uff_set(signals["low"][0], 2, 13, "NONE", 0, 1),
+            uff_set(signals["low"][1], -1, 12, "NONE", 1, 2),
         ],
         "overwrite",
     )
@@ -483,54 +406,3 @@ def test_the_instrument_exports_are_read():
     assert ascii_.values.size == 79292
     with pytest.raises(ImportProblem, match="no time record.*function types 9"):
         read_uff(folder / "sample_dataset58_psd.uff")
-
-
-def test_the_f16_is_a_campaign(tmp_path):
-    files = sorted((DATA / "f16_ground_vibration").glob("*Level[1357].mat"))
-    if not files:
-        pytest.skip(
-            f"the F-16 records are not in {DATA}: nonlinearbenchmark.org has them, put them into"
-            " f16_ground_vibration"
-        )
-    for file in files:
-        shutil.copyfile(file, tmp_path / file.name)
-    channels = [
-        {
-            "name": f"a{index + 1}",
-            "variable": f"Acceleration[{index}]",
-            "unit": "m s-2",
-            "kind": "acceleration",
-            "point_m": [0.1 * index, 0, 0],
-            "direction": "+z",
-        }
-        for index in range(3)
-    ]
-    described = {
-        "forces": [
-            {
-                "name": "shaker",
-                "variable": "Force",
-                "unit": "N",
-                "point_m": [0, 0, 0],
-                "direction": "+z",
-            }
-        ],
-        "channels": channels,
-        "records": [{"file": file.name} for file in files],
-        "period_samples": 8192,
-        "transient_periods": 1,
-        "voltage": {"variable": "Voltage", "unit": "V"},
-    }
-    (tmp_path / "campaign.yaml").write_text(yaml.safe_dump(described))
-    campaign, rows = import_folder(tmp_path)
-    np.testing.assert_allclose(campaign["load_rms"].values, [12.4, 36.8, 73.6, 97.8], rtol=5e-3)
-    assert (
-        campaign.sizes["time"] == 73728
-        and campaign["voltage"].shape == (4, 73728)
-        and rows[0]["sampling_Hz"] == 400.0
-    )
-    assert not [
-        row
-        for row in check_campaign(campaign)
-        if row["level"] != "pass" and row["check"] != "content"
-    ]

@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-import pyuff
 import yaml
 
-from tests.support.universal_file import write_uff
+from tests.support.universal_file import UNCLOSED, dataset_58, write_uff
 from vibroimpact.campaign.checks.file_checks import check_campaign
 from vibroimpact.campaign.file import channel_signal, force_signal
 from vibroimpact.campaign.importing.assemble import import_folder
@@ -14,13 +13,7 @@ from vibroimpact.campaign.importing.report import import_text
 from vibroimpact.campaign.importing.uff import read_uff
 from vibroimpact.io.signal_files.signals import ImportProblem
 
-# pyuff leaves a file that it writes to unclosed.
-pytestmark = [
-    pytest.mark.filterwarnings(
-        "ignore:Exception ignored in.*uff:pytest.PytestUnraisableExceptionWarning"
-    ),
-    pytest.mark.filterwarnings("ignore:unclosed file.*uff:ResourceWarning"),
-]
+pytestmark = UNCLOSED
 
 RATE, SAMPLES = 512.0, 2048
 FORCE, ACCELERATION = 13, 12  # ordinate types of dataset 58
@@ -29,30 +22,9 @@ UNITS = {FORCE: "N", ACCELERATION: "m/s^2"}
 
 def record(values, node, kind, name, start=0.0):
     """A dataset 58 of a time record along +z."""
-    return pyuff.prepare_58(
-        binary=0,
-        func_type=1,
-        id1=name,
-        load_case_id=0,
-        rsp_ent_name="NONE",
-        rsp_node=node,
-        rsp_dir=3,
-        ref_node=0,
-        ref_dir=0,
-        data=values,
-        x=start + np.arange(values.size) / RATE,
-        ord_data_type=4,
-        num_pts=values.size,
-        abscissa_spacing=1,
-        abscissa_min=start,
-        abscissa_inc=1.0 / RATE,
-        z_axis_value=0.0,
-        abscissa_spec_data_type=17,
-        abscissa_axis_units_lab="s",
-        ordinate_spec_data_type=kind,
-        ordinate_axis_units_lab=UNITS[kind],
-        orddenom_spec_data_type=0,
-    )
+    time = start + np.arange(values.size) / RATE
+    units = {"ordinate_spec_data_type": kind, "ordinate_axis_units_lab": UNITS[kind]}
+    return dataset_58(values, time, node, 3, id1=name, abscissa_inc=1.0 / RATE, **units)
 
 
 @pytest.fixture

@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-import pyuff
 
 from docs.examples import hammer_test
-from tests.support.universal_file import write_uff
+from tests.support.universal_file import UNCLOSED, dataset_58, write_uff
 from vibroimpact.campaign.file import write_campaign
 from vibroimpact.campaign.importing.assemble import import_folder
 from vibroimpact.campaign.importing.frf import read_frfs
@@ -14,12 +13,7 @@ from vibroimpact.config.reading import load_config
 from vibroimpact.io.signal_files.signals import ImportProblem
 from vibroimpact.reports.linear_comparison import described, linear_comparison
 
-pytestmark = [
-    pytest.mark.filterwarnings(
-        "ignore:Exception ignored in.*uff:pytest.PytestUnraisableExceptionWarning"
-    ),
-    pytest.mark.filterwarnings("ignore:unclosed file.*uff:ResourceWarning"),
-]
+pytestmark = UNCLOSED
 
 LINES = np.arange(0.0, 300.0, 0.25)  # Hz
 STIFFER = 1.05  # of the springs to the ground: the first mode
@@ -40,25 +34,17 @@ def responses(order, first=1.0):
 
 def function(values, response, force, label, kind=ACCELERATION):
     """A frequency response of dataset 58 along x."""
-    return pyuff.prepare_58(
-        binary=0,
+    return dataset_58(
+        values,
+        LINES,
+        response,
+        1,
         func_type=4,
-        id1="response",
-        rsp_ent_name="NONE",
-        load_case_id=0,
-        rsp_node=response,
-        rsp_dir=1,
         ref_node=force,
         ref_dir=1,
-        data=values,
-        x=LINES,
         ord_data_type=6,
-        num_pts=LINES.size,
-        abscissa_spacing=1,
-        abscissa_min=0.0,
-        abscissa_inc=LINES[1],
-        z_axis_value=0.0,
         abscissa_spec_data_type=18,
+        abscissa_axis_units_lab="",
         ordinate_spec_data_type=kind,
         ordinate_axis_units_lab=label,
         orddenom_spec_data_type=FORCE,

@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.properties.guarded import Tried, folder_of_example, guarded
+from tests.support.universal_file import UNCLOSED, dataset_58
 from vibroimpact.campaign.file import (
     channel_signal,
     force_signal,
@@ -21,13 +22,7 @@ from vibroimpact.campaign.file import (
 from vibroimpact.campaign.importing.assemble import import_folder
 from vibroimpact.io.signal_files.signals import ImportProblem
 
-# pyuff leaves the file that it writes a binary set to unclosed; nothing else writes such files.
-pytestmark = [
-    pytest.mark.filterwarnings(
-        "ignore:Exception ignored in.*uff:pytest.PytestUnraisableExceptionWarning"
-    ),
-    pytest.mark.filterwarnings("ignore:unclosed file.*uff:ResourceWarning"),
-]
+pytestmark = UNCLOSED
 
 RATE, SAMPLES = 512.0, 128
 SENSORS = ("shaker", "tip", "middle")
@@ -355,29 +350,16 @@ def damaged_netcdf_files(data, tried):
 def uff_sets(values, binary, even, units):
     """Datasets 58 of three signals."""
     for number, (row, label) in enumerate(zip(values, units, strict=True), start=1):
-        yield pyuff.prepare_58(
+        yield dataset_58(
+            row,
+            np.arange(SAMPLES) / RATE,
+            number,
+            2,
             binary=binary,
-            func_type=1,
-            rsp_node=number,
-            rsp_dir=2,
-            rsp_ent_name="NONE",
-            ref_node=0,
-            ref_dir=0,
-            data=row,
-            x=np.arange(SAMPLES) / RATE,
-            ord_data_type=4,
             abscissa_spacing=int(even),
-            abscissa_min=0.0,
-            abscissa_inc=1.0 / RATE,
-            num_pts=SAMPLES,
-            z_axis_value=0.0,
-            abscissa_spec_data_type=17,
-            abscissa_axis_units_lab="s",
             ordinate_spec_data_type=13 if number == 1 else 12,
             ordinate_axis_units_lab=label,
             id1=f"signal {number}",
-            load_case_id=0,
-            orddenom_spec_data_type=0,
         )
 
 

@@ -8,11 +8,12 @@ from hypothesis import strategies as st
 
 from tests.properties.guarded import Tried, folder_of_example, guarded
 from tests.properties.recorder_files import EITHER, REFUSED, RIGHT
-from tests.properties.test_raw_measurements import pytestmark as pytestmark
+from tests.support.universal_file import UNCLOSED, dataset_58
 from vibroimpact.campaign.importing.uff import read_uff
 from vibroimpact.io.signal_files.signals import ImportProblem
 from vibroimpact.io.units import si_factor
 
+pytestmark = UNCLOSED
 RATE, SAMPLES, OFFSET_MM = 512.0, 96, 250.0
 FORCE, ACCELERATION = 13, 12
 # {habit: [(how, what is owed)]}, the usual first.
@@ -67,18 +68,13 @@ def datasets(how, values):
     for node, (type_, row) in enumerate(zip((FORCE, ACCELERATION), values, strict=True), start=1):
         label = "N" if type_ == FORCE else how["ordinate_axis_units_lab"]
         data = row.astype(complex) if how["ord_data_type"] == 5 else row
-        yield pyuff.prepare_58(
-            binary=how["binary"], func_type=how["func_type"], rsp_node=node, ref_node=0, ref_dir=0,
-            rsp_dir=how["rsp_dir"] if type_ == ACCELERATION else 2, rsp_ent_name="NONE",
-            data=data, x=(how["abscissa_min"] + np.arange(SAMPLES) / RATE) / second,
-            byte_ordering=how["byte_ordering"], ord_data_type=how["ord_data_type"],
-            abscissa_spacing=how["abscissa_spacing"], num_pts=SAMPLES,
-            abscissa_min=how["abscissa_min"] / second, abscissa_inc=1.0 / RATE / second,
-            z_axis_value=0.0, abscissa_spec_data_type=how["abscissa_spec_data_type"],
-            abscissa_axis_units_lab=how["abscissa_axis_units_lab"], ordinate_spec_data_type=type_,
-            ordinate_axis_units_lab=label, id1=f"signal {node}", load_case_id=0,
-            orddenom_spec_data_type=0,
-        )  # fmt: skip
+        direction = how["rsp_dir"] if type_ == ACCELERATION else 2
+        time = (how["abscissa_min"] + np.arange(SAMPLES) / RATE) / second
+        same = ("binary", "func_type", "byte_ordering", "ord_data_type", "abscissa_spacing")
+        same += ("abscissa_spec_data_type", "abscissa_axis_units_lab")
+        units = {"ordinate_spec_data_type": type_, "ordinate_axis_units_lab": label}
+        units |= {"abscissa_inc": 1.0 / RATE / second, **{name: how[name] for name in same}}
+        yield dataset_58(data, time, node, direction, id1=f"signal {node}", **units)
 
 
 def write(path, how, values):
