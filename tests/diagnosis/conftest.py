@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.support.contact_truth import contact_campaign
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.diagnosis.comparison import Comparison
 from vibroimpact.diagnosis.explanations import Structure
@@ -11,6 +12,16 @@ from vibroimpact.excitation.random_force import band_limited_noise
 
 RATE, SECONDS, GAP = 2048.0, 8.0, 2.8886e-4
 LOADS = (0.8, 6.0, 20.0)
+
+
+@pytest.fixture(scope="session")
+def measured(tmp_path_factory):
+    """(campaign file, model file, TrueForces): a record below contact and one with impacts, with
+    gains 2 %, frequencies 0.3 % and damping 10 % off.
+    """
+    levels = ((0.5, 1.3, "fit"), (12.0, 1.3, "fit"))
+    folder = tmp_path_factory.mktemp("contact")
+    return contact_campaign(folder, seed=(3,), levels=levels, duration=5.0)
 
 
 @pytest.fixture(scope="session")

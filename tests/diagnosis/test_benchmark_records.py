@@ -81,18 +81,6 @@ def test_a_level_given_twice_has_two_names(tmp_path):
     }
 
 
-def test_held_out_record_may_have_another_period(tmp_path):
-    write_f16(tmp_path, "Level1", 9)
-    write_f16(tmp_path, "Level2_Validation", 4, period=16384)
-    levels = levels_of(f16_campaign(tmp_path.glob("*.mat")))
-    assert sorted((level.frequency[1], level.periods) for level in levels) == [
-        (400.0 / 16384, 3),
-        (400.0 / 8192, 8),
-    ]
-    for level in levels:
-        assert level.response[2] == pytest.approx(level.force, abs=1.0e-6)
-
-
 def test_silverbox_input_and_output_are_paired(tmp_path):
     for level in (5, 50, 100):
         driven = periodic(30, level).T

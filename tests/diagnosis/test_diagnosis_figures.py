@@ -11,16 +11,13 @@ from tests.support.discrepancy_results import made_up_verdict
 from tests.support.figure_layout import layout_faults
 from vibroimpact.diagnosis.verdict.content import CONCLUSIONS, FoundEffect
 from vibroimpact.reports.discrepancy_page import discrepancy_page
-from vibroimpact.reports.figures.diagnosis.holding import chosen_channels, chosen_levels
 from vibroimpact.reports.figures.diagnosis.law import (
     force_error,
     median_law,
     pressed,
-    telling_level,
 )
 from vibroimpact.reports.figures.diagnosis.place import place_figure
-from vibroimpact.reports.figures.diagnosis.psd import chosen_channels as channels_of_psd
-from vibroimpact.reports.figures.diagnosis.psd import chosen_records, psd_figure
+from vibroimpact.reports.figures.diagnosis.psd import psd_figure
 from vibroimpact.reports.figures.diagnosis.sheets import diagnosis_figures
 from vibroimpact.reports.figures.drawing import drawn
 from vibroimpact.reports.figures.style import tidy_log_axes
@@ -191,15 +188,6 @@ def test_force_error_is_that_of_the_law():
     assert force_error(evidence, 1, [1, 3]) == pytest.approx(noise, rel=0.05)
 
 
-def test_the_highest_level_at_which_the_model_gains_is_shown():
-    evidence = made_up_evidence()
-    levels = xr.concat([evidence.isel(law_stretch=[0])] * 2, "law_stretch", data_vars="minimal")
-    assert telling_level(levels) == 1
-    levels = levels.assign(model_force=levels["model_force"].copy())
-    levels["model_force"].values[0, 1] = levels["model_force"].values[1, 1]  # no gain at the last
-    assert telling_level(levels) == 0
-
-
 def test_median_law_has_the_gap_and_the_stiffness():
     evidence = made_up_evidence()
     motion, force = (evidence[f"demanded_{name}"].values[0, 1] for name in ("motion", "force"))
@@ -253,26 +241,6 @@ def test_evidence_says_itself_what_it_can_not_give():
     silent = {sheet.name: sheet.caption for sheet in sheets if not sheet.tables}
     assert list(silent) == ["diagnosis_holding", "diagnosis_law", "diagnosis_free_sensor"]
     assert all(why in caption for caption in silent.values())
-
-
-def test_the_completed_model_is_left_out_where_nothing_was_added():
-    evidence = made_up_evidence(after="nothing")
-    for sheet in map(drawn, diagnosis_figures(evidence, made_up_psd(), verdict_of("none"))):
-        assert "completed model" not in {curve for _, curve, _ in sheet.tables}
-        assert "→" not in sheet.figure.get_suptitle()
-
-
-def test_telling_levels_and_channels_are_chosen():
-    evidence = made_up_evidence(channels=40, records=9)
-    levels = [float(evidence["load"].values[row]) for row in chosen_levels(evidence)]
-    assert levels == [1.0, 2.0**7, 2.0**8]  # lowest, held out, highest
-    power = evidence["holding_force"].values
-    loudest = np.unravel_index(np.argmax((power**2).sum(-1)), power.shape[:3])[2]
-    chosen = chosen_channels(evidence)
-    assert len(chosen) == 12 and chosen == sorted(chosen) and loudest in chosen
-    psd = made_up_psd(channels=40, records=9)
-    assert channels_of_psd(psd)[0] == 38
-    assert chosen_records(psd) == [1, 8, 0]
 
 
 def test_a_failed_free_run_does_not_stop_the_figure():

@@ -7,26 +7,14 @@ import pytest
 from scipy.signal import resample_poly
 
 import vibroimpact as vi
-from tests.support.contact_truth import contact_campaign
 from vibroimpact.diagnosis.comparison import Comparison
 from vibroimpact.diagnosis.evidence import _modelled, evidence_of
 from vibroimpact.diagnosis.explanations import Point, Structure, Term
 from vibroimpact.diagnosis.measurement.signals import signals_of
 from vibroimpact.io.records import read_record, write_record
 
-LEVELS = ((0.5, 1.3, "fit"), (8.0, 1.3, "fit"), (12.0, 1.3, "holdout"))
-DURATION_S = 6.0
 NO_PLACES = SimpleNamespace(names=())
 WRONG = Point((Term("gap", "all", (0.6,)),))  # a clearance that the structure does not have
-
-
-@pytest.fixture(scope="module")
-def measured(tmp_path_factory):
-    """(campaign file, model file, TrueForces) of a structure that is the model, but for
-    frequencies, damping and gains.
-    """
-    folder = tmp_path_factory.mktemp("contact")
-    return contact_campaign(folder, seed=(3,), levels=LEVELS, duration=DURATION_S)
 
 
 @pytest.fixture(scope="module")

@@ -28,7 +28,7 @@ STATED = MeasuredStructure(
     candidates=["cubic_stiffness.joint", "single_friction.joint", "clearance.joint"],
     additions=[],
 )
-NAMED = {"cubic": "cubic_stiffness", "friction": "coulomb_friction", "clearance": "clearance"}
+NAMED = {"friction": "coulomb_friction", "clearance": "clearance"}
 
 
 @functools.cache
@@ -77,7 +77,6 @@ def test_modes_of_the_lowest_level_are_those_of_the_masses():
 @pytest.mark.parametrize(
     ("law", "wanted"),
     [
-        ("cubic", {"cubic_stiffness": joint.CUBIC}),
         ("friction", {"force": joint.SLIP, "stick_stiffness": joint.STICK}),
         ("clearance", {"half_gap": joint.HALF_GAP, "stiffness": joint.STOP}),
     ],

@@ -195,13 +195,6 @@ def test_nothing_missing_is_said_with_its_chance(chance, words):
     assert words in verdict_sentence(made_up_verdict("none", p_global_before=chance))
 
 
-def test_cost_of_all_stages_is_on_the_page():
-    stages = {"null": {"cpu_seconds": 10.0, "simulations": 72}}
-    cost = {"cpu_seconds": 10.0, "simulations": 72, "by_stage": stages}
-    page = discrepancy_page("campaign", made_up_verdict(cost=cost), [])
-    assert '<td>null</td><td class="number">10</td>' in page
-
-
 @pytest.mark.parametrize(
     ("unit", "values", "shown", "number"),
     [

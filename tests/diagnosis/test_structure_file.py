@@ -88,9 +88,6 @@ def test_other_models_are_left_to_the_study(tmp_path, text):
             "structure.residual_modes = 'yes please' must be two of true and false",
         ),
         ("emphasis: -1", "structure.emphasis = -1 must be between 0"),
-        ("places: {joint: 3}", "structure.places.joint = 3 must give a coefficient"),
-        ("places: [joint]", "structure.places = ['joint'] must be a block of places"),
-        ("additions: {}", "structure.additions = {} must be a list of names law.place"),
         (
             "candidates: [clearance.a/../b]",
             "structure.candidates[0] = 'clearance.a/../b' must be a law and a place",
@@ -99,10 +96,6 @@ def test_other_models_are_left_to_the_study(tmp_path, text):
             "additions: [clearance.a, clearance.a]",
             "structure.additions = ['clearance.a', 'clearance.a'] must be a list of names",
         ),
-        ("band_Hz: [5, .inf]", "structure.band_Hz[1] = inf must be a finite number"),
-        ("emphasis: .nan", "structure.emphasis = nan must be between 0"),
-        ("mean: 1", "structure.mean = 1 must be true or false"),
-        ("drive: [a1]", "structure.drive = ['a1'] must be the name of a channel"),
     ],
 )
 def test_errors_in_the_structure_file_are_reported(tmp_path, key, told):

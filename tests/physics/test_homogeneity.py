@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from tests.support.one_mass import one_mass
 from vibroimpact import Case, build_model, check_config, simulate_cases
 from vibroimpact.equivalent_support import homogeneity
 from vibroimpact.equivalent_support.homogeneity import effects_with_a_scale
@@ -48,29 +49,17 @@ MODELS = {
 def configuration(support, element, constant):
     """A mass on a spring with a support, shaken by a random force."""
     dead = [{"point": "mass", "direction": [1.0, 0.0, 0.0], "force_N": constant}]
-    return check_config(
-        {
-            "study": "mass",
-            "structure": {
-                "kind": "chain",
-                "masses": [{"name": "mass", "mass_kg": 1.0}],
-                "springs": [{"between": ["ground", "mass"], "stiffness_N_per_m": 63165.0}],
-            },
-            "supports": [SUPPORT | support],
-            "elements": [ELEMENT | element] if element else [],
-            "excitation": {
-                "kind": "band_limited",
-                "point": "mass",
-                "direction": [1.0, 0.0, 0.0],
-                "band_Hz": [5.0, 200.0],
-                "constant": dead if constant else [],
-            },
-            "integration": {"start_up_s": 0.5},
-            "grid": {"load_rms_N": [10.0], "gap_m": [1.0e-4], "seeds": 1},
-            "record": {"duration_s": 2.0},
-        },
-        "mass",
+    force = one_mass(63165.0)["excitation"] | {"constant": dead if constant else []}
+    values = one_mass(
+        63165.0,
+        supports=[SUPPORT | support],
+        elements=[ELEMENT | element] if element else [],
+        excitation=force,
+        integration={"start_up_s": 0.5},
+        grid={"load_rms_N": [10.0], "gap_m": [1.0e-4], "seeds": 1},
+        record={"duration_s": 2.0},
     )
+    return check_config(values, "mass")
 
 
 @pytest.mark.parametrize("name", MODELS)

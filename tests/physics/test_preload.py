@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.support.one_mass import one_mass
 from tests.support.oscillator import oscillator
 from tests.support.straight_path import straight_path
 from vibroimpact.config.reading import check_config
@@ -157,21 +158,15 @@ def test_a_pressed_pair_is_a_spring_of_both_bars():
     """Neither bar lifts off: omega² = (K + 2 k) / m, and at rest the pair pushes nowhere."""
     stop = {"point": "mass", "stiffness_N_per_m": 1.0e5, "preload_N": 50.0, "name": "pair"}
     config = check_config(
-        {
-            "study": "pair",
-            "structure": {
-                "kind": "chain",
-                "masses": [{"name": "mass", "mass_kg": 1.0}],
-                "springs": [{"between": ["ground", "mass"], "stiffness_N_per_m": 5.0e4}],
-            },
-            "damping": {"kind": "modal", "other_ratio": 0.0},
-            "supports": [stop | {"profile": {"kind": "bars", "angle_deg": 0.0}}],
-            "initial": {"displacement_m": {"mass": {"x": 1.0e-4}}},
-            "excitation": {"kind": "none"},
-            "integration": {"steps_per_second": 100000, "start_up_s": 0.0, "imperfection": 0.0},
-            "grid": {"load_rms_N": [1.0], "gap_m": [1.0], "seeds": 1},
-            "record": {"duration_s": 0.05, "every_step": True},
-        },
+        one_mass(
+            5.0e4,
+            damping={"kind": "modal", "other_ratio": 0.0},
+            supports=[stop | {"profile": {"kind": "bars", "angle_deg": 0.0}}],
+            initial={"displacement_m": {"mass": {"x": 1.0e-4}}},
+            excitation={"kind": "none"},
+            integration={"steps_per_second": 100000, "start_up_s": 0.0, "imperfection": 0.0},
+            record={"duration_s": 0.05, "every_step": True},
+        ),
         "pair",
     )
     record = record_of(config)
@@ -200,16 +195,11 @@ def test_a_spring_beside_the_structure_takes_its_share(cubic):
     """K u + c u³ = P at rest, of a Hertzian contact with h p^1.5 = P."""
     spring = {"name": "spring", "point": "mass", "direction": [1.0, 0.0, 0.0]}
     config = check_config(
-        {
-            "study": "spring",
-            "structure": {
-                "kind": "chain",
-                "masses": [{"name": "mass", "mass_kg": 1.0}],
-                "springs": [{"between": ["ground", "mass"], "stiffness_N_per_m": 5.0e4}],
-            },
-            "damping": {"kind": "modal", "other_ratio": 0.0},
-            "elements": [spring | {"cubic_N_per_m3": cubic}],
-            "supports": [
+        one_mass(
+            5.0e4,
+            damping={"kind": "modal", "other_ratio": 0.0},
+            elements=[spring | {"cubic_N_per_m3": cubic}],
+            supports=[
                 {
                     "name": "bar",
                     "point": "mass",
@@ -219,11 +209,10 @@ def test_a_spring_beside_the_structure_takes_its_share(cubic):
                     "profile": {"kind": "bars", "angle_deg": 180.0, "sides": "one"},
                 }
             ],
-            "excitation": {"kind": "none"},
-            "grid": {"load_rms_N": [1.0], "gap_m": [1.0], "seeds": 1},
-            "integration": {"steps_per_second": 50000, "start_up_s": 0.0, "imperfection": 0.0},
-            "record": {"duration_s": 0.05, "every_step": True},
-        },
+            excitation={"kind": "none"},
+            integration={"steps_per_second": 50000, "start_up_s": 0.0, "imperfection": 0.0},
+            record={"duration_s": 0.05, "every_step": True},
+        ),
         "spring",
     )
     record = record_of(config)

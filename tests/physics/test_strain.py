@@ -133,10 +133,3 @@ def test_a_strain_is_scaled_to_the_largest_displacement(cantilever):
     moved = np.abs(model.sensor_shapes[:, 1]).max()
     assert scale[0] * np.abs(strain).max() == pytest.approx(moved)
     assert scale[1] == 1.0
-
-
-def sound_one():
-    drive = Channel("force", (-0.2121, 0.0, 0.9121), Y, "N", "generic")
-    apex = [Channel("apex", (0.0, 0.0, 1.0), Y, "m", "displacement")]
-    silent = np.zeros((1, 1, 64))
-    return campaign_dataset(silent, silent, apex, [drive], [Level("only", 3e-4)], RATE)

@@ -94,18 +94,32 @@ def moved(value, factor):
     return value * factor
 
 
+def at(mapping, parts):
+    """What stands at a place of nested mappings and lists, None where there is none."""
+    for part in parts:
+        try:
+            mapping = mapping[int(part) if part.isdigit() else part]
+        except (LookupError, TypeError):
+            return None
+    return mapping
+
+
 def numbers(name):
-    """Yield (place, value) of the numbers that a configuration states and no earlier one did."""
-    stated, base = CONFIGURATIONS[name], CONFIGURATIONS["path"]
+    """Yield (place, value) of the numbers of mappings that a configuration states and no earlier
+    one did.
+    """
+    stated = CONFIGURATIONS[name]
+    earlier = [*CONFIGURATIONS.values()][: [*CONFIGURATIONS].index(name)]
     for place, value in leaves(stated):
         parts = place.split(".")
+        around = parts[:-1] or parts
         if not isinstance(value, (int, float)) or isinstance(value, bool) or value == 0:
             continue
         # the length of a direction does not matter, and a chain has one
         exempt = place.startswith(tuple(EXEMPT)) or (
             name in ("chain", "modes") and "direction" in parts
         )
-        if not exempt and (name == "path" or stated[parts[0]] != base.get(parts[0])):
+        if not exempt and all(at(stated, around) != at(other, around) for other in earlier):
             yield place, value
 
 

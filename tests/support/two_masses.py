@@ -57,7 +57,7 @@ def force_of(periodic, periods, seed=5):
     return np.tile(fine / fine.std(), periods if periodic else 1)
 
 
-def simulate(law, force, levels=LEVELS):
+def simulate(law, force, levels):
     """(force (level, time), acceleration (level, 2, time)) from rest under force (2 * SUBSTEPS *
     time,) times each level.
     """
@@ -87,25 +87,21 @@ def simulate(law, force, levels=LEVELS):
     return force[:: 2 * SUBSTEPS] * loads[:, None], kept.transpose(2, 1, 0)
 
 
-def campaign(law, periodic=True, periods=4, levels=LEVELS, splits=SPLITS, turned=False):
-    """The campaign Dataset of a law, without its period stated. turned: the sensor at the drive
-    counts against the force.
-    """
-    force, response = simulate(law, force_of(periodic, periods), levels)
+def campaign(law, periodic=True, periods=4):
+    """The campaign Dataset of a law, without its period stated."""
+    force, response = simulate(law, force_of(periodic, periods), LEVELS)
     response = response + NOISE * response[0, 1].std() * np.random.default_rng(1).standard_normal(
         response.shape
     )
-    if turned:
-        response[:, 0] *= -1.0
     up = (0.0, 0.0, 1.0)
     places = (
-        ("upper", (0.0, 0.0, 0.0), (0.0, 0.0, -1.0) if turned else up),
+        ("upper", (0.0, 0.0, 0.0), up),
         ("lower", (0.0, 0.0, -0.5), up),
     )
     channels = [Channel(*place, "m s-2", "acceleration") for place in places]
     drive = Channel("shaker", (0.0, 0.0, 0.0), up, "N", "force")
     records = [
-        Level(f"{level:g} N", np.nan, 0, split) for level, split in zip(levels, splits, strict=True)
+        Level(f"{level:g} N", np.nan, 0, split) for level, split in zip(LEVELS, SPLITS, strict=True)
     ]
     return campaign_dataset(
         force[:, None],

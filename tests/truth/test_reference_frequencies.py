@@ -47,14 +47,6 @@ def test_stand_in_with_bilateral_plates(stiffness):
         np.testing.assert_allclose(found, expected, rtol=1.0e-3)
 
 
-@pytest.mark.parametrize(
-    ("stiffness", "points"), [(k, n) for k, row in FIRST_BY_POINTS.items() for n in row]
-)
-def test_first_frequency_by_number_of_contact_points(stiffness, points):
-    found = bilateral(TUBES["stand_in"], stiffness, points, "y", 0.012)[0]
-    assert found == pytest.approx(FIRST_BY_POINTS[stiffness][points], rel=1.0e-3)
-
-
 def test_with_stiff_shear_the_euler_bernoulli_line_comes_back():
     # The rotary inertia stays, which is what is left of the difference.
     stiff = Planes(Rig.bare(TUBES["stand_in"].with_changes(shear_coefficient=50.0))).modes(
