@@ -13,7 +13,6 @@ from vibroimpact.campaign.file import (
     Level,
     campaign_dataset,
     channel_at,
-    channel_signal,
     read_campaign,
     write_campaign,
 )
@@ -89,27 +88,6 @@ def test_a_channel_is_found_by_place_direction_and_kind(campaign):
     assert channel_at(campaign, (0.0, 0.0, 1.0), (2.0, 0.0, 0.0), "acceleration") == 0
     with pytest.raises(CampaignError, match="no channel of kind acceleration within 5 mm.*leg y"):
         channel_at(campaign, (-0.3, 0.0, 0.5), (0.0, 1.0, 0.0), "acceleration")
-
-
-def test_a_signal_comes_in_si_and_without_the_invalid_end(campaign):
-    campaign["valid_samples"] = ("record", np.array([400, 300]))
-    stored = campaign["response"].values.astype(float)
-    np.testing.assert_allclose(
-        channel_signal(campaign, 1, 1), 9.80665 * stored[1, 1, :300], rtol=1e-12
-    )
-    np.testing.assert_allclose(channel_signal(campaign, 0, 2), 1e-3 * stored[0, 2], rtol=1e-12)
-    campaign["channel_units"].values[0] = "furlong"
-    with pytest.raises(CampaignError, match="top x has the unit 'furlong'"):
-        channel_signal(campaign, 0, 0)
-
-
-def test_another_codes_campaign_is_read():
-    if not DEVELOPMENT.is_file():
-        pytest.skip(f"the development campaigns are not in {DEVELOPMENT.parent}")
-    campaign = read_campaign(DEVELOPMENT)
-    assert campaign.sizes["record"] == 4 and campaign.attrs["antialias"] == "fir80"
-    point, direction = campaign["channel_point"].values[0], campaign["channel_direction"].values[0]
-    assert channel_at(campaign, point, direction, str(campaign["channel_kind"].values[0])) == 0
 
 
 def test_the_synthetic_campaign_has_its_loads_gap_and_noise():

@@ -64,13 +64,6 @@ def test_a_signalling_nan_is_a_missing_sample(campaign):
     assert np.argwhere(missing).tolist() == [[1, 5]]
 
 
-@pytest.mark.parametrize("value", [np.nan, np.inf, 1.0e30])
-def test_a_hole_in_one_record_leaves_the_others(campaign, value):
-    campaign["response"].values[2, 1, 700] = value
-    force, response = usable_signals(campaign, check_campaign(campaign))
-    assert force.all() and np.argwhere(~response).tolist() == [[2, 1]]
-
-
 def test_records_too_short_to_average_are_left_out(campaign):
     campaign["valid_samples"] = ("record", np.array([4096, 100, 4096]))
     campaign["load_rms"].values[1] = np.sqrt(

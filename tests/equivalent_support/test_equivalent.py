@@ -17,7 +17,7 @@ from vibroimpact import EquivalentError, equivalent
 from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.stage_keys import answer_digest
 from vibroimpact.equivalent_support.answer import NOT_MOVED
-from vibroimpact.equivalent_support.answer_text import as_csv, as_plain, as_text
+from vibroimpact.equivalent_support.answer_text import as_plain, as_text
 from vibroimpact.equivalent_support.study_tables import (
     recommended_rows_of,
     require_tables_of,
@@ -312,13 +312,6 @@ def test_questions_without_sense_are_refused(study, tmp_path):
             equivalent(study, load, gap)
     with pytest.raises(EquivalentError, match="is no finished study"):
         equivalent(tmp_path / "nowhere", 1.0, 1e-4)
-
-
-def test_the_csv_has_one_row_per_group(study):
-    header, row = as_csv(equivalent(study, 4.0, 1.0e-4)).splitlines()
-    values = dict(zip(header.split(","), row.split(","), strict=True))
-    assert float(values["k_N_per_m"]) == pytest.approx(k_law(4.0e4))
-    assert values["supports"] == "left right"
 
 
 def test_the_load_to_add_reaches_the_level_at_a_gap_of_the_study(study):

@@ -1,7 +1,6 @@
 """Springs and dampers to ground in the formats of other programs, read back by small readers."""
 
 import argparse
-import ast
 import dataclasses
 import math
 
@@ -13,7 +12,7 @@ from tests.support.straight_path import straight_path
 from vibroimpact import EquivalentError, build_model, check_config, point_springs, springs_text
 from vibroimpact.equivalent_support import command
 from vibroimpact.equivalent_support.answer import NOT_MOVED, Answer, GroupAnswer, Span
-from vibroimpact.equivalent_support.export_formats.registry import FIRST_NUMBER, FORMATS
+from vibroimpact.equivalent_support.export_formats.registry import FIRST_NUMBER
 
 K, C = 8.0e4, 210.0
 TANGENT = np.array([1.0, 1.0, 0.0]) / math.sqrt(2.0)
@@ -219,14 +218,3 @@ def test_numbers_begin_where_asked(study_model):
     command.add_arguments(parser)
     asked = parser.parse_args(["mine", "--load", "1", "--gap", "1"])
     assert asked.first_number == FIRST_NUMBER
-
-
-def test_python_formats_are_python(slanted_model):
-    springs = point_springs(answer(("plate",), "z"), slanted_model)
-    for form in ("opensees", "code_aster"):
-        ast.parse(springs_text(springs, form))
-
-
-def test_the_command_line_knows_every_format():
-    assert command.FORMATS == tuple(FORMATS) == tuple(FORMATS.keys())
-    assert set(READERS) == set(FORMATS)

@@ -7,6 +7,7 @@ import yaml
 from evidence.validation.prediction.law_errors import error_rows, tube_rows
 from evidence.validation.prediction.laws import EquivalentLaw, fit_displacement_law, law_text
 from tests.conftest import ROOT
+from tests.support.one_mass import ALONG_X, one_mass
 from vibroimpact import (
     EquivalentError,
     build_model,
@@ -43,28 +44,15 @@ def changed(**keys):
 def test_held_motion_of_one_mass_is_that_of_the_closed_form():
     """RMS displacement pi f G / (4 zeta K²) of an oscillator under a flat one-sided PSD G."""
     mass, stiffness, ratio, wide = 1.0, 63165.0, 0.01, (0.5, 4000.0)
-    config = check_config(
-        {
-            "study": "mass",
-            "structure": {
-                "kind": "chain",
-                "masses": [{"name": "mass", "mass_kg": mass}],
-                "springs": [{"between": ["ground", "mass"], "stiffness_N_per_m": stiffness}],
-            },
-            "damping": {"kind": "modal", "first_ratios": [ratio], "other_ratio": ratio},
-            "supports": [{"name": "stop", "point": "mass", "stiffness_N_per_m": 1.0e6}],
-            "excitation": {
-                "kind": "band_limited",
-                "point": "mass",
-                "direction": [1.0, 0.0, 0.0],
-                "band_Hz": list(wide),
-            },
-            "integration": {"steps_per_second": 102400},
-            "grid": {"load_rms_N": [1.0], "gap_m": [1.0e-4]},
-            "record": {"duration_s": 20.0, "sampling_frequency_Hz": 10240},
-        },
-        "mass",
+    values = one_mass(
+        stiffness,
+        damping={"kind": "modal", "first_ratios": [ratio], "other_ratio": ratio},
+        supports=[{"name": "stop", "point": "mass", "stiffness_N_per_m": 1.0e6}],
+        excitation={"kind": "band_limited", "band_Hz": list(wide), **ALONG_X},
+        integration={"steps_per_second": 102400},
+        record={"duration_s": 20.0, "sampling_frequency_Hz": 10240},
     )
+    config = check_config(values, "mass")
     held = held_tube(build_model(config), wide)
     for place in (0, 80, 144):
         total = stiffness + held.stiffness[place]

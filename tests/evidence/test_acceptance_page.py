@@ -23,12 +23,10 @@ from evidence.acceptance.detection_limit import (
     probability,
 )
 from evidence.acceptance.families import FAMILIES
-from evidence.acceptance.figures.sheets import acceptance_figures
 from evidence.acceptance.intervals import wilson
 from evidence.acceptance.judging import SAME_QUANTITY, judged, kind_of
-from evidence.acceptance.page import acceptance_page, acceptance_sentence
 from evidence.acceptance.right_names import right_names
-from evidence.acceptance.table import acceptance_table, confusion, standing
+from evidence.acceptance.table import acceptance_table, standing
 from evidence.truth import hidden
 from tests.support.discrepancy_results import made_up_verdict
 from vibroimpact.effects.registry import EFFECTS
@@ -177,14 +175,6 @@ def test_a_refused_campaign_has_no_parameter_and_is_open():
     assert row["parameter"] == "" and np.isnan(row["low"]) and row["open"]
 
 
-def test_partly_is_open_only_where_it_closes_half():
-    little = verdict_of("partly_explained", [["gap"]])
-    little["misfit"]["holdout"] = MISFIT | {"closed_fraction": 0.4}
-    stranger = ("loose_mass", {})
-    assert not row_of("out_of_catalogue", little, stranger)["open"]
-    assert row_of("out_of_catalogue", verdict_of("partly_explained", [["gap"]]), stranger)["open"]
-
-
 def test_wrong_names_are_told_from_right_ones():
     table = small_draw()
     assert numbers_of(table, "one effect", "first") == (3, 2, pytest.approx(2 / 3))
@@ -248,18 +238,6 @@ def test_targets_are_met_from_their_side(rate, least, most, expected):
     assert standing(rate, least, most) == expected
 
 
-def test_costs_are_medians_and_worsts_in_minutes():
-    costs = [60.0, 120.0, 600.0]
-    rows = [
-        row_of("nothing", verdict_of("none", cost={"cpu_seconds": cpu}, seconds=1.0))
-        for cpu in costs
-    ]
-    assert numbers_of(rows, "nothing", "CPU per verdict, min, median") == (3, None, 2.0)
-    assert numbers_of(rows, "nothing", "CPU per verdict, min, worst") == (3, None, 10.0)
-    old = row_of("nothing", verdict_of("none", seconds=30.0))
-    assert old["cpu_seconds"] == 30.0  # of a verdict that states no cost
-
-
 def stated(**more):
     """A verdict that states probabilities, of friction first."""
     ranked = verdict_of("named", [["dry_friction"]])
@@ -282,11 +260,6 @@ def test_every_stated_probability_is_counted_once():
     stranger = statements(stated(), truth_of("out_of_catalogue", ("loose_mass", {})))
     assert [true for _, true in stranger] == [False, True, False, False]
     assert statements(verdict_of("none"), truth_of("nothing")) == []
-
-
-def test_probabilities_of_the_set_count_where_ranks_have_none():
-    given = verdict_of("ambiguous", [["gap"], ["hertz"]], ambiguity_probability=[0.7, 0.2])
-    assert statements(given, truth_of("strong", GAP)) == [(0.7, True), (0.2, False)]
 
 
 def test_calibrated_statements_lie_on_the_diagonal():
@@ -390,95 +363,6 @@ def test_rows_are_read_as_they_were_written(folder, tmp_path):
     ]
 
 
-def tables_of(rows, stated):
-    """The tables of the page."""
-    return {
-        "table": acceptance_table(rows, stated),
-        "reliability": reliability(stated),
-        "confusion": confusion(rows),
-        "detection": detection(rows),
-    }
-
-
-@pytest.fixture(scope="module")
-def figures(tmp_path_factory):
-    """(folder, {name: Sheet}, tables) of the small draw, saved."""
-    folder, rows = tmp_path_factory.mktemp("draw"), small_draw()
-    tables = tables_of(rows, [(0.95, number > 0) for number in range(12)])
-    sheets = acceptance_figures(rows, tables)
-    for sheet in sheets:
-        sheet.save(folder)
-    return folder, {sheet.name: sheet for sheet in sheets}, tables
-
-
-def test_acceptance_figures_show_every_row(figures):
-    _, sheets, tables = figures
-    assert [*sheets] == [
-        f"acceptance_{name}"
-        for name in ("rates", "reliability", "confusion", "strength", "parameters")
-    ]
-    shares = [row for row in tables["table"] if row["count"] is not None and row["campaigns"]]
-    assert len(sheets["acceptance_rates"].rows()) == len(shares)
-    counted = sum(row["campaigns"] for row in sheets["acceptance_confusion"].rows())
-    assert counted == len(small_draw())
-    (point,) = sheets["acceptance_reliability"].rows()
-    assert float(point["true_share"]) == pytest.approx(11 / 12)
-    labels = sheets["acceptance_rates"].axes["main"].get_yticklabels()
-    assert "one effect: first (n = 3)" in [label.get_text() for label in labels]
-
-
-def test_confusion_matrix_shows_each_count(figures):
-    axes = figures[1]["acceptance_confusion"].axes["main"]
-    rows, columns = (
-        [label.get_text() for label in labels]
-        for labels in (axes.get_yticklabels(), axes.get_xticklabels())
-    )
-    cells = {
-        (rows[round(at[1])], columns[round(at[0])]): text.get_text()
-        for text in axes.texts
-        if text.get_text().isdigit()
-        for at in [text.get_position()]
-    }
-    assert cells == {
-        ("dry friction", "dry friction"): "2",
-        ("dry friction", "preload"): "1",
-        ("nothing", "none"): "1",
-        ("drifting gap", "gap"): "1",
-        ("lugre friction", "dry friction"): "1",
-        ("two effects", "the right pair"): "1",
-    }
-
-
-def test_empty_acceptance_page_says_so(tmp_path):
-    tables = tables_of([], [])
-    for sheet in acceptance_figures([], tables):
-        assert any("no " in text.get_text() for axes in sheet.axes.values() for text in axes.texts)
-        sheet.save(tmp_path)
-    page = acceptance_page("development_7", [], tables, [])
-    assert "No verdict states a probability" in page and "No campaign answers yet" in page
-
-
-def test_acceptance_page_names_draw_count_and_missed_rows(figures):
-    folder, sheets, tables = figures
-    rows = small_draw()
-    sentence = acceptance_sentence("development_7", rows, tables["table"])
-    assert sentence.startswith("7 campaigns of the draw development_7: ")
-    assert "one effect: first (67 %, target at least 96 %, campaigns: 3)" in sentence
-    assert "parameters: median error (27 %, target at most 1 %, campaigns: 2)" in sentence
-    assert "nothing: an effect asserted" not in sentence.split("No campaign")[0]
-    assert "weak: first" in sentence.split("No campaign answers yet:")[1]
-    mixed = [row | {"source": source} for row, source in zip(rows, "aabaaab", strict=True)]
-    said = acceptance_sentence("development_7", mixed, tables["table"])
-    assert "Judged by several sources: a, b." in said and "several" not in sentence
-    page = acceptance_page(
-        "development_7", rows, tables, [folder / f"{name}.png" for name in sheets]
-    )
-    assert page.count("data:image/png;base64,") == 5
-    missed = sum(row["standing"] == "missed" for row in tables["table"])
-    assert page.count('<td class="missed">missed</td>') == missed > 0
-    assert all(words in page for words in ("0005", "drifting gap", "partly explained", "92 %"))
-
-
 def test_a_stray_gain_may_be_named_and_an_exact_alias_counts():
     truth = truth_of("strong", GAP) | {"gains": [1.01, 0.85]}
     gap, gain = ["gap"], ["sensor_gain"]
@@ -505,11 +389,3 @@ def test_calibration_error_is_the_mean_gap():
     stated = [(0.95, True)] * 50 + [(0.95, False)] * 50 + [(0.05, False)] * 100
     assert calibration_error(stated) == pytest.approx(0.5 * 0.45 + 0.5 * 0.05)
     assert np.isnan(calibration_error([]))
-
-
-def test_rows_judged_before_a_question_was_asked_do_not_answer():
-    older = [
-        {key: value for key, value in row.items() if key != "first_three"} for row in small_draw()
-    ]
-    assert numbers_of(older, "one effect", "first")[0] == 3
-    assert numbers_of(older, "one effect", "among the first three")[0] == 0

@@ -20,7 +20,6 @@ from vibroimpact.excitation.force_stream import ForceStream, normalised_force
 from vibroimpact.excitation.random_force import (
     ForceError,
     band_limited_noise,
-    fft_length,
     resample_measured,
 )
 from vibroimpact.excitation.random_streams import random_generator
@@ -114,19 +113,6 @@ def test_force_does_not_depend_on_the_requested_range(section):
         (100, 10),
     ]:
         assert np.array_equal(pieces.values(first, count), whole[first : first + count])
-
-
-def test_white_noise_in_pieces_is_one_draw():
-    stream = ForceStream(
-        SimpleNamespace(kind="white_noise"),
-        np.random.default_rng(10),
-        70_000,
-        51200.0,
-        slice(0, 70_000),
-    )
-    assert np.array_equal(
-        stream.values(0, 70_000), np.random.default_rng(10).standard_normal(70_000)
-    )
 
 
 def test_a_force_of_a_long_record_takes_little_memory():
@@ -273,13 +259,3 @@ def test_errors_in_a_force_file_are_reported(tmp_path):
     table.write_text("force\n" + "\n".join(["1.0"] * 10))
     with pytest.raises(ForceFileError, match="says no sampling frequency"):
         read_force(table, "force", None)
-
-
-def test_fast_length_has_small_factors_only():
-    for samples in (1, 7, 1000, 12345, 2825000):
-        length = fft_length(samples)
-        assert samples <= length <= 1.1 * samples + 1
-        for prime in (2, 3, 5):
-            while length % prime == 0:
-                length //= prime
-        assert length == 1

@@ -16,7 +16,7 @@ def study(tmp_path_factory):
     study = TinyStudy(tmp_path_factory.mktemp("results"), values)
     study.simulate()
     study.identify()
-    study.draw()
+    study.draw(("model", "response"))
     return study
 
 

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from tests.flow.test_in_time import CRITICAL, GAP, QUASI_STEADY, in_flow, stopped
 from vibroimpact.cli import main
-from vibroimpact.flow.limit_cycle import ModelInFlow, describing_stiffness
+from vibroimpact.flow.limit_cycle import describing_stiffness
 from vibroimpact.reports.figures.flow_sweep import flow_sweep_figures
 from vibroimpact.study.flow_sweep import (
     Equivalent,
@@ -40,15 +39,6 @@ def test_describing_function_of_a_stop():
         found = describing_stiffness(1.0, np.array([amplitude]))[0]
         assert found == pytest.approx(harmonic, rel=1e-6)
     assert describing_stiffness(1.0, np.array([0.5])) == 0.0
-
-
-@pytest.mark.parametrize(("over", "amplitude"), [(1.1, 1.1484), (1.3, 1.4254), (1.5, 1.8590)])
-def test_limit_cycle_of_the_describing_function(over, amplitude):
-    """One lag between elastic stops of 5 k at 1 mm."""
-    tube = ModelInFlow(in_flow(stopped(), QUASI_STEADY, 1.0), QUASI_STEADY, 1.0, 3.0)
-    none = np.zeros(2)
-    assert tube.critical(none, none)[0] == pytest.approx(CRITICAL, rel=1e-5)
-    assert tube.limit_cycle(GAP, 1e-3 * amplitude) == pytest.approx(over * CRITICAL, rel=2e-4)
 
 
 def runs(levels):

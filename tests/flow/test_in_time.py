@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from tests.support.oscillator import oscillator
 from vibroimpact.config.flow import ConnorsForce, NegativeDamping, QuasiSteady
@@ -99,14 +98,9 @@ def stopped(**keys):
     return oscillator(MASS, STIFFNESS, DAMPING, contact_stiffness=5.0 * STIFFNESS, **keys)
 
 
-@pytest.mark.parametrize(
-    ("over", "integrated"), [(1.1, 1.1563e-3), (1.3, 1.4436e-3), (1.5, 1.8820e-3)]
-)
-def test_limit_cycle_against_elastic_stops(over, integrated):
-    for start in (0.5e-3, 2.5e-3):
-        model = in_flow(stopped(displacement=(start, 0.0)), QUASI_STEADY, over * CRITICAL)
-        traces = run(model, 4.0)
-        assert amplitude(traces) == pytest.approx(integrated, rel=1e-2)
+def test_a_limit_cycle_closes_its_energy_balance():
+    traces = run(in_flow(stopped(displacement=(2.5e-3, 0.0)), QUASI_STEADY, 1.3 * CRITICAL), 4.0)
+    assert amplitude(traces) == pytest.approx(1.4436e-3, rel=1e-2)
     energy = {name: float(value[0]) for name, value in traces.energy.items()}
     assert energy["fluid_work"] == energy["input_work"] > 0.0
     lost = energy["fluid_work"] - energy["dissipated"] - energy["mechanical"] - energy["stored"]
@@ -114,49 +108,6 @@ def test_limit_cycle_against_elastic_stops(over, integrated):
 
 
 NET = NegativeDamping(kind="negative_damping", constant=1.0, frequency_Hz=30.0)
-
-
-def net_damping(ratio):
-    """(force, velocity) that leave a damping ratio in all."""
-    velocity = np.sqrt((RATIO - ratio) * 2.0 * MASS * OMEGA / (2.0 * DENSITY / 30.0))
-    return fluid_force(NET, DIAMETER), velocity
-
-
-@pytest.mark.parametrize(("share", "grows"), [(0.97, False), (1.03, True)])
-def test_separatrix_under_dry_friction(share, grows):
-    """Net damping -2 % against 2 N of friction: 4 F / (pi c omega) = 2.98625 mm."""
-    friction = {"slip_limit": 2.0, "stick_stiffness": 1e3 * STIFFNESS}
-    start = share * 2.98625e-3
-    # a stiff slider needs short steps; it sticks within 1e-4 mm
-    model = oscillator(MASS, STIFFNESS, DAMPING, element=friction, displacement=(start, 0.0))
-    found = peaks(motion(run(in_flow(model, *net_damping(-0.02)), 0.5)))
-    assert (found[-1] > found[2]) == grows
-
-
-def test_limit_cycle_against_damped_stops():
-    """Net damping -2 %, stop of 0.2 k and 5 c that only pushes: the amplitude of a solver."""
-    c = 2.0 * 0.02 * MASS * OMEGA
-    contact = {"damping": 5.0 * c}
-    model = oscillator(
-        MASS,
-        STIFFNESS,
-        DAMPING,
-        contact_stiffness=0.2 * STIFFNESS,
-        contact=contact,
-        displacement=(1.2e-3, 0.0),
-    )
-    found = amplitude(run(in_flow(model, *net_damping(-0.02)), 4.0))
-
-    def rate(_, y):
-        depth = max(abs(y[0]) - GAP, 0.0)
-        push = max(0.2 * STIFFNESS * depth + 5.0 * c * y[1] * np.sign(y[0]), 0.0)
-        pushed = -np.sign(y[0]) * push * (depth > 0.0)
-        return [y[1], (pushed - STIFFNESS * y[0] + c * y[1]) / MASS]
-
-    solved = solve_ivp(rate, (0.0, 4.0), [1.2e-3, 0.0], rtol=1e-7, atol=1e-10, max_step=5e-4)
-    expected = np.abs(solved.y[0][solved.t > 3.5]).max()
-    assert expected == pytest.approx(1.70e-3, rel=1e-2)
-    assert found == pytest.approx(expected, rel=1e-2)
 
 
 def test_a_force_too_fast_for_the_step_is_refused():

@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 
 from vibroimpact.identify.estimate import (
-    METHODS,
     Estimate,
     grade,
     mark_weak,
-    table_rows,
     unresolved,
 )
 from vibroimpact.identify.segment_scatter import (
@@ -59,45 +57,6 @@ def test_uncertain_damping_is_dropped_alone():
     )
 
 
-def test_downgrade_never_improves_quality():
-    assert mark_weak(Estimate("ods", 1.0, 0.1), "why").quality == "weak"
-    assert mark_weak(unresolved("ods", "no peak"), "why").quality == "unresolved"
-    assert mark_weak(unresolved("ods", "no peak"), "why").note == "no peak; why"
-
-
-def test_rows_have_the_columns_of_the_consistency_table():
-    rows = table_rows(
-        [Estimate(method, 1.0e5, 1.0e3) for method in METHODS],
-        {"gap_m": 2.0e-4, "load_rms_N": 5.0, "seed": 3},
-    )
-    assert list(rows[0]) == [
-        "gap_m",
-        "load_rms_N",
-        "load_over_gap",
-        "seed",
-        "group",
-        "direction",
-        "method",
-        "k_N_per_m",
-        "k_standard_error",
-        "c_N_s_per_m",
-        "c_standard_error",
-        "frequency_Hz",
-        "damping_ratio",
-        "quality",
-        "reason",
-        "flag",
-        "k_bound",
-        "contact_fraction",
-        "caution",
-    ]
-    assert (
-        [row["method"] for row in rows] == list(METHODS)
-        and rows[0]["load_over_gap"] == pytest.approx(2.5e4)
-        and rows[0]["seed"] == 3
-    )
-
-
 def overlapping(generator, segments=12):
     """Values of overlapping segments: correlated with the neighbours as 65 % overlapped Hann
     segments are, and their nu.
@@ -142,3 +101,9 @@ def test_independent_values_per_hertz_follow_record_length():
     assert effective_duration(17.817, spectral_kernel("hann", 10.0)) == pytest.approx(
         49.0, rel=0.08
     )
+
+
+def test_downgrade_never_improves_quality():
+    assert mark_weak(Estimate("ods", 1.0, 0.1), "why").quality == "weak"
+    lost = mark_weak(unresolved("ods", "no peak"), "why")
+    assert (lost.quality, lost.note) == ("unresolved", "no peak; why")

@@ -49,15 +49,6 @@ def test_derivative_of_the_response_with_the_support(study_model, modes):
     )
 
 
-@pytest.mark.parametrize("k", [-300.0, 1.0, 1.0e3, 1.0e5, 4.0e6, 1.0e8])
-@pytest.mark.parametrize("doublings", [-0.2, 0.0, 1.0, 2.5])
-def test_support_of_a_pole_is_the_inverse_of_the_first_pole(study_model, modes, k, doublings):
-    c = doublings * 60.0 * (0.4 + max(k, 0.0) / 1.0e5) if k < 2.0e6 else doublings * 2.5e-3 * k
-    pole = first_pole(study_model, k, c)
-    found = equivalent_support(modes, *frequency_of(pole))
-    assert (found.k, found.c) == pytest.approx((k, c), rel=1.0e-5, abs=1.0e-4)
-
-
 @pytest.mark.parametrize("k, c", [(1.0e3, 20.0), (1.0e5, 60.0), (4.0e6, 9.0e3)])
 def test_jacobian_of_the_support(study_model, modes, k, c):
     frequency, ratio = frequency_of(first_pole(study_model, k, c))
@@ -74,11 +65,6 @@ def test_jacobian_of_the_support(study_model, modes, k, c):
             rtol=1.0e-4,
             atol=1.0e-6 * np.abs(found.jacobian).max(),
         )
-
-
-def test_pole_above_the_clamped_frequency_has_no_support(study_model, modes):
-    clamped = natural_frequencies(study_model, 1.0e12, 1)[0]
-    assert equivalent_support(modes, 1.05 * clamped, 0.01).k == np.inf
 
 
 @pytest.fixture(scope="module")

@@ -62,11 +62,6 @@ def test_a_start_without_error_is_refused():
         minimise(lambda x: (np.array([np.nan]), np.eye(1)), np.zeros(1), passes=3)
 
 
-def test_passes_are_limited_and_reported():
-    found = minimise(with_jacobian, np.array([1.0, 2.0]), passes=2, settled=0.0)
-    assert found.passes == 2
-
-
 def test_differences_of_a_failed_trial_are_zero():
     slope = differences(
         lambda x: None if x[1] > 0.0 else np.array([3.0 * x[0]]),

@@ -52,15 +52,6 @@ def test_known_poles_come_back_from_frequency_responses(drive):
             assert ratio_of_drives == pytest.approx(SHAPES[1, mode] / SHAPES[0, mode], rel=1.0e-4)
 
 
-def test_lower_orders_are_leading_blocks_of_the_highest():
-    frequency = np.arange(5.0, 45.0, 0.1)
-    values = responses(frequency, [0, 1])
-    together, alone = NormalEquations(frequency, values, 12), NormalEquations(frequency, values, 5)
-    np.testing.assert_allclose(
-        np.sort_complex(together.poles(5)[0]), np.sort_complex(alone.poles(5)[0]), rtol=1.0e-6
-    )
-
-
 def white_noise_spectra(frequency):
     """Exact one-sided cross-spectra (output, reference, frequency) under a unit white force on
     output 0, all outputs references.

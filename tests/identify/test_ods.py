@@ -12,7 +12,7 @@ from vibroimpact.identify.broadband import family_map, identify_broadband
 from vibroimpact.identify.linear.family import LinearFamily, driven_modes
 from vibroimpact.identify.linear.poles import first_pole, frequency_of
 from vibroimpact.identify.linear.responses import frf
-from vibroimpact.identify.ods import deflection_shape, linear_ods, mac, match_shape
+from vibroimpact.identify.ods import deflection_shape, mac, match_shape
 from vibroimpact.identify.peak import level_edges
 from vibroimpact.identify.reference_tube import ReferenceTube
 from vibroimpact.identify.spectra.window_leakage import spectral_kernel
@@ -71,30 +71,6 @@ def test_operating_shapes_give_the_support_stiffness(study_model, tube, k, c):
     by_mode_shape = match.k_grid[np.argmax(match.mac_grid)]
     assert k != 4.0e6 or by_mode_shape > 1.08 * k
     assert match.model_error > 0.03
-
-
-def test_the_change_with_damping_is_that_of_a_new_match(study_model, tube):
-    k, c = 4.0e6, 1.0e4
-    frequency, ratio = frequency_of(first_pole(study_model, k, c))
-    line = frf(study_model, k, c, tube.at_line.frequency, study_model.line_shapes)
-    measured = deflection_shape(
-        line[:, None, :], tube.at_line.frequency, level_edges(frequency, ratio, 25.0)
-    )
-    match = match_shape(
-        measured, tube.at_line, tube.mode_shapes, tube.shape_members(ratio, 0.05 * ratio)
-    )
-    higher, lower = (
-        match_shape(
-            measured, tube.at_line, tube.mode_shapes, tube.shape_members(factor * ratio, 0.0)
-        ).k
-        for factor in (1.05, 0.95)
-    )
-    assert match.damping_change == pytest.approx(0.5 * np.log(higher / lower), rel=0.05)
-
-
-def test_narrow_band_shape_is_the_response_shape(study_model, tube):
-    motion = tube.at_line.frf(1.0e5, 62.0, slice(130, 131))[0, :, 0]
-    assert mac(linear_ods(tube.at_line, slice(130, 131), 1.0e5, 62.0), motion) == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("k, c", [(1.0e4, 31.0), (4.0e6, 1.0e4)])

@@ -36,13 +36,6 @@ def test_damping_from_width_inverts_width_from_damping(level, ratio):
     assert damping_from_width(edges, level) == pytest.approx((20.0, ratio), rel=1.0e-9)
 
 
-def test_for_light_damping_the_textbook_rule_holds():
-    low, high = level_edges(16.0, 0.002, 2.0)
-    assert (high - low) / (2.0 * 16.0) == pytest.approx(0.002, rel=1.0e-4)
-    low, high = level_edges(16.0, 0.002, 25.0)
-    assert (high - low) / (2.0 * 16.0 * np.sqrt(24.0)) == pytest.approx(0.002, rel=1.0e-3)
-
-
 def test_slopes_of_the_resonance():
     place, ratio, step = np.log(20.0), np.log(0.03), 1.0e-6
     frequency = np.linspace(15.0, 25.0, 41)

@@ -2,7 +2,6 @@
 them.
 """
 
-from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
@@ -23,7 +22,7 @@ from vibroimpact.identify.spectra.window_leakage import (
     spectral_kernel,
     window_autocorrelation,
 )
-from vibroimpact.study.case_spectra import CaseSpectra, case_spectra
+from vibroimpact.study.case_spectra import case_spectra
 
 RATE = 256.0
 
@@ -44,25 +43,6 @@ def test_psd_is_that_of_scipy(window, overlap):
     np.testing.assert_allclose(spectra.frequency, frequency)
     np.testing.assert_allclose(mean, expected, rtol=1.0e-10)
     assert np.all(low <= mean) and np.all(mean <= high) and np.any(low < 0.5 * mean)
-
-
-def test_white_noise_psd_is_twice_variance_over_rate():
-    signal = 3.0 * np.random.default_rng(2).standard_normal((1, 400 * 256))
-    mean = psd_statistics(segment_spectra(signal, RATE, settings()).values)[0][0]
-    assert mean[5:-5].mean() == pytest.approx(2.0 * 9.0 / RATE, rel=0.01)
-    assert mean.sum() * 0.1 == pytest.approx(signal.var(), rel=0.01)
-
-
-@pytest.mark.parametrize("window, equivalent_bins", [("hann", 1.5), ("boxcar", 1.0)])
-def test_a_sine_keeps_its_amplitude(window, equivalent_bins):
-    time = np.arange(49 * 256) / RATE
-    mean = psd_statistics(
-        segment_spectra(
-            0.7 * np.sin(2.0 * np.pi * 20.0 * time)[None], RATE, settings(window=window)
-        ).values
-    )[0][0]
-    assert mean.sum() * 0.1 == pytest.approx(0.5 * 0.7**2, rel=1.0e-6)
-    assert mean[200] == pytest.approx(0.5 * 0.7**2 / (0.1 * equivalent_bins), rel=1.0e-6)
 
 
 def test_float32_records_stay_float32():
@@ -141,30 +121,6 @@ def test_window_leakage_gives_the_expected_averaged_spectrum(window):
     )
 
 
-def test_10_s_hann_window_widens_the_peak_by_8_percent():
-    kernel = spectral_kernel("hann", 10.0)
-    step = kernel.spacing_Hz / kernel.oversampling
-    frequency = np.arange(4000) * step
-    true = 1.0 / ((1.0 - (frequency / 16.0) ** 2) ** 2 + 4.0 * 0.015**2 * (frequency / 16.0) ** 2)
-    smooth = np.convolve(true, kernel.weights, mode="same")
-    # the crossings of half the peak, by linear interpolation
-    widths = []
-    for curve in (true, smooth):
-        above = np.flatnonzero(curve > 0.5 * curve.max())
-        low = np.interp(
-            0.5 * curve.max(),
-            curve[above[0] - 1 : above[0] + 1],
-            frequency[above[0] - 1 : above[0] + 1],
-        )
-        high = np.interp(
-            0.5 * curve.max(),
-            curve[above[-1] : above[-1] + 2][::-1],
-            frequency[above[-1] : above[-1] + 2][::-1],
-        )
-        widths.append(high - low)
-    assert 1.06 < widths[1] / widths[0] < 1.10
-
-
 def test_neighbouring_bins_of_a_hann_window_are_correlated():
     kernel = spectral_kernel("hann", 10.0)
     np.testing.assert_allclose(kernel.bin_correlation, [1.0, 4.0 / 9.0, 1.0 / 36.0], atol=1.0e-12)
@@ -221,45 +177,3 @@ def test_case_spectra_keep_what_figures_and_methods_read():
         spectra["psd_acceleration_max"], 4.0 * spectra["psd_displacement_max"], rtol=1.0e-4
     )
     assert float(spectra["effective_averages"]) == effective_averages(20.0, 256.0, config.spectra)
-
-
-def test_spectra_of_a_record_in_pieces_are_those_of_the_whole():
-    generator = np.random.default_rng(12)
-    config = SimpleNamespace(
-        record=SimpleNamespace(sampling_frequency_Hz=128.0),
-        spectra=settings(4.0, 0.65),
-        excitation=SimpleNamespace(direction=(0.0, 1.0, 0.0)),
-        identification=SimpleNamespace(
-            lscf=SimpleNamespace(band_Hz=(8.0, 20.0)),
-            broadband=SimpleNamespace(band_Hz=(6.0, 30.0)),
-        ),
-    )
-    series = [generator.standard_normal((count, 2500)).astype(np.float32) for count in (2, 2, 3)]
-    record = xr.Dataset(
-        {
-            name: ((dim, "time"), values)
-            for name, dim, values in zip(
-                ("displacement", "acceleration", "line_displacement"),
-                ("sensor", "sensor", "line_point"),
-                series,
-                strict=True,
-            )
-        },
-        {"sensor": ["a.x", "a.y"]},
-    )
-    whole, parts = case_spectra(config, record), {}
-    made = CaseSpectra(config, ["a.x", "a.y"], 3, 2500, np.float32)
-    made.write = lambda name, place, values: parts.setdefault(
-        name, np.empty(whole[name].shape, "f4")
-    ).__setitem__(place, values)
-    edges = [0, 1, 5, 700, 701, 2040, 2500]
-    for first, last in pairwise(edges):
-        made.put(*(values[:, first:last] for values in series))
-    made.finish()
-    assert set(parts) == set(whole.data_vars) - {"effective_averages"}
-    assert all(np.array_equal(parts[name], whole[name].values) for name in parts)
-    short = CaseSpectra(config, ["a.x", "a.y"], 3, 2500, np.float32)
-    short.write = made.write
-    short.put(*(values[:, :1000] for values in series))
-    with pytest.raises(ValueError, match="the record ended after"):
-        short.finish()

@@ -2,7 +2,6 @@
 has its caption.
 """
 
-import io
 import json
 import math
 import re
@@ -12,9 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from PIL import Image
 
 from tests.support.made_up_study import GAPS, LOADS, MadeUpStudy, equivalent_rows, made_up_config
+from tests.support.one_mass import one_mass
 from vibroimpact.config.reading import check_config, load_config
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.io.records import read_record, write_record
@@ -23,9 +22,8 @@ from vibroimpact.reports.captions import CATEGORIES, CaptionError, read_caption
 from vibroimpact.reports.centred_wear import centred_sentence
 from vibroimpact.reports.equivalent_answer import Answer, Value
 from vibroimpact.reports.figures.interactive.equivalent import equivalent_plots
-from vibroimpact.reports.figures.interactive.pictures import few_colours
 from vibroimpact.reports.figures.interactive.shape import contact_along_plot, shapes_of
-from vibroimpact.reports.figures.interactive.spectrum import band_of, blocks_of, spectra_of_series
+from vibroimpact.reports.figures.interactive.spectrum import band_of, spectra_of_series
 from vibroimpact.reports.figures.interactive.study_plots import MOST_FRAMES, shown_loads
 from vibroimpact.reports.study_statistics import study_statistics
 from vibroimpact.reports.study_tables import answer_table, reason_table
@@ -227,13 +225,6 @@ def test_a_bounded_stiffness_is_shown_everywhere(study):
     assert "in 1 the tube hardly touches" in headline(study.config, [row])[0]
 
 
-def test_sentences_in_tables_are_blocks_on_a_narrow_screen(page):
-    titles = [value for tag, name, value in page.attributes if (tag, name) == ("td", "data-title")]
-    assert "why" in titles
-    classes = [value for tag, name, value in page.attributes if (tag, name) == ("div", "class")]
-    assert "scroll words" in classes and "scroll" in classes
-
-
 def test_every_load_and_gap_has_its_spectrum(page, study):
     plot = page.plots()["spectrum"]
     assert plot["controls"] == ["gap", "load"] and len(plot["frames"]) == len(GAPS) * len(LOADS)
@@ -270,16 +261,6 @@ def test_time_series_stand_in_where_there_are_no_spectra(study):
     assert 9.0 < low < 10.5 and 29.5 < high < 31.0
     short = {"segment_s": 20.0, "overlap": 0.5, "window": "hann"}
     assert spectra_of_series(study.paths, read, StageSettings(short), places)[2] == {}
-
-
-def test_blocks_of_lines_hold_each_line_once():
-    frequency = np.arange(0.0, 1024.0, 0.05)
-    edges = blocks_of(frequency, (5.0, 200.0))
-    assert frequency[edges[0]] == pytest.approx(5.0) and edges.size <= 702
-    assert np.all(np.diff(edges) >= 1) and frequency[edges[-1]] == pytest.approx(200.0)
-    # Near 10 Hz a block is narrower than the half width of a peak with 0.5 % of damping.
-    near = np.searchsorted(frequency[edges], 10.0)
-    assert frequency[edges[near + 1]] - frequency[edges[near]] <= 0.1
 
 
 def test_moving_shape_has_its_parts_in_phase_and_quadrature(page):
@@ -424,40 +405,11 @@ def test_what_is_to_be_known_of_contact_is_said_with_its_case(study):
     )
 
 
-def test_structure_without_supports_has_no_gap_in_its_words(study):
-    free = StageSettings({**study.config, "supports": []})
-    told = run_sentence(free, study.content.statistics)
-    assert told.startswith("A U-tube under a random force") and "gap" not in told
-
-
 def test_supports_of_a_chain_stand_side_by_side_by_name():
-    config = check_config(
-        {
-            "study": "chain",
-            "structure": {
-                "kind": "chain",
-                "masses": [{"name": "mass", "mass_kg": 2.0}],
-                "springs": [{"between": ["ground", "mass"], "stiffness_N_per_m": 2.0e4}],
-            },
-            "supports": [
-                {
-                    "name": "stop",
-                    "point": "mass",
-                    "stiffness_N_per_m": 1.0e6,
-                    "profile": {"kind": "planes", "normals_deg": [0.0]},
-                }
-            ],
-            "excitation": {
-                "kind": "band_limited",
-                "point": "mass",
-                "direction": [1.0, 0.0, 0.0],
-                "band_Hz": [2.0, 60.0],
-            },
-            "grid": {"load_rms_N": [1.0], "gap_m": [1.0e-3], "seeds": 1},
-            "record": {"duration_s": 5.0},
-        },
-        "chain",
-    )
+    flat = {"kind": "planes", "normals_deg": [0.0]}
+    stop = {"name": "stop", "point": "mass", "stiffness_N_per_m": 1.0e6, "profile": flat}
+    grid = {"load_rms_N": [1.0], "gap_m": [1.0e-3], "seeds": 1}
+    config = check_config(one_mass(2.0e4, 2.0, supports=[stop], grid=grid), "chain")
     case = all_cases(config.grid)[0]
     touched = xr.Dataset(
         {"contact_fraction": ("support", [0.25], {"units": "1"})},
@@ -469,21 +421,6 @@ def test_supports_of_a_chain_stand_side_by_side_by_name():
     (bars,) = plot.drawn()["frames"]["0,0"]
     assert (bars["x"], bars["y"]) == (["stop"], [25.0])
     assert plot.drawn()["layout"]["xaxis"]["type"] == "category" and statistics.sections == []
-
-
-def test_large_picture_is_made_smaller_and_looks_the_same(tmp_path):
-    across = np.linspace(0.0, 255.0, 600)
-    colours = np.stack(np.broadcast_arrays(across, across[:, None], 128.0), axis=-1)
-    colours += np.random.default_rng(1).integers(0, 2, colours.shape)  # hard to compress
-    colours = np.clip(colours, 0, 255).astype(np.uint8)
-    path = tmp_path / "large.png"
-    Image.fromarray(colours).save(path)
-    data = few_colours(path)
-    assert len(data) < 0.5 * path.stat().st_size
-    difference = np.abs(np.asarray(Image.open(io.BytesIO(data)).convert("RGB"), int) - colours)
-    assert difference.mean() < 8.0  # of 255, with 256 of 65536 colours
-    Image.fromarray(colours[:50, :50]).save(path)
-    assert few_colours(path) == path.read_bytes()
 
 
 def test_slider_of_a_large_study_keeps_both_ends():
@@ -523,10 +460,6 @@ def test_caption_without_category_or_text_is_refused(tmp_path):
         file.write_text(text)
         with pytest.raises(CaptionError, match=re.escape(words)):
             read_caption(file)
-
-
-def test_made_up_cases_are_named_as_those_of_a_study(study):
-    assert {case_from_id(Path(path).stem).load_rms_N for path in study.paths} == set(LOADS)
 
 
 def test_a_case_without_a_shape_is_left_out_of_the_page(tmp_path):

@@ -108,13 +108,6 @@ def test_matrices_are_symmetric():
         assert abs(matrix - matrix.T).max() < 1e-12 * abs(matrix).max()
 
 
-def test_planes_of_a_plane_tube_are_exactly_uncoupled():
-    structure = tube()
-    in_plane = np.isin(np.arange(structure.dofs) % 6, [0, 2, 4])
-    for matrix in (structure.mass.toarray(), structure.stiffness.toarray()):
-        assert np.count_nonzero(matrix[np.ix_(in_plane, ~in_plane)]) == 0
-
-
 @pytest.mark.parametrize("theory", ["timoshenko", "euler_bernoulli"])
 @pytest.mark.parametrize("place", [0.05, 0.25, 0.4137, 0.5])
 def test_tip_load_gives_exact_deflection_and_stress(theory, place):
@@ -148,22 +141,6 @@ def test_force_between_nodes_acts_as_on_a_node():
         dofs = linalg.solve(structure.stiffness.toarray(), rows.T, assume_a="pos")
         seen.append(structure.displacement_rows(1.0) @ dofs)
     assert seen[0] == pytest.approx(seen[1], rel=1e-8, abs=1e-9 * np.abs(seen[1]).max())
-
-
-def test_reciprocity_between_points_that_are_not_nodes():
-    structure = tube(direction=(1.0, 2.0, 2.0))
-    one, other = structure.displacement_rows(0.311), structure.displacement_rows(1.234)
-    there = other @ linalg.solve(structure.stiffness.toarray(), one.T, assume_a="pos")
-    back = one @ linalg.solve(structure.stiffness.toarray(), other.T, assume_a="pos")
-    assert there == pytest.approx(back.T, rel=1e-8, abs=1e-10 * np.abs(there).max())
-
-
-def test_contact_rows_project_on_the_contact_directions():
-    structure = tube(supports=[plate([-0.3, 0.0, 0.35])])
-    rows = structure.contact_rows()
-    assert rows.shape == (3, 2, structure.dofs)
-    for point, place in enumerate((0.335, 0.35, 0.365)):
-        assert np.allclose(rows[point], structure.displacement_rows(place)[:2], rtol=0, atol=1e-12)
 
 
 def test_soft_root_springs_carry_the_tube_as_a_rigid_body():

@@ -13,15 +13,6 @@ import numpy as np
 AXES = np.eye(3)
 
 
-def assembled(axes, k, c):
-    """The matrices (K, C) of springs k (2,) and dampers c (2,) along axes (2, 3)."""
-    K, C = (
-        sum((value or 0.0) * np.outer(axis, axis) for axis, value in zip(axes, values, strict=True))
-        for values in (k, c)
-    )
-    return K, C
-
-
 def nastran(text):
     """Large-field cards: 8 characters of name, then fields of 16."""
     cards, names, name = [], [], None
