@@ -161,7 +161,6 @@ def test_overrides_replace_top_level_keys():
 
 REFUSALS = [
     # place, value, what the sentence must hold: place, value, rule, remedy
-    ("spectra.overlp", 0.5, ["unknown key 'overlp' in spectra", "did you mean 'overlap'?"]),
     ("sead", 3, ["unknown key 'sead'", "did you mean 'seed'?"]),
     (
         "supports.1.gapfactor",
@@ -169,17 +168,10 @@ REFUSALS = [
         ["unknown key 'gapfactor' in supports[1]", "did you mean 'gap_factor'?"],
     ),
     (
-        "structure.leg_lenght_m",
-        0.7,
-        ["unknown key 'leg_lenght_m' in structure", "did you mean 'leg_length_m'?"],
-    ),
-    ("grid.load_rms_N.cont", 3, ["unknown key 'cont' in grid.load_rms_N", "did you mean 'count'?"]),
-    (
         "grid.gap_m.2",
         -1.3e-4,
         ["grid.gap_m[2] = -0.00013 must be > 0", "radial clearance in metres"],
     ),
-    ("grid.gap_m.0", 0.28, ["grid.gap_m[0] = 0.28", "half the diameter", "in metres"]),
     ("structure.section.outer_diameter_m", 22.22, ["outer_diameter_m = 22.22", "in metres?"]),
     (
         "structure.section.wall_thickness_m",
@@ -187,9 +179,7 @@ REFUSALS = [
         ["wall_thickness_m = 0.0127", "half the outer diameter"],
     ),
     ("structure.material.young_modulus_Pa", 202, ["young_modulus_Pa = 202", "in Pa?"]),
-    ("structure.material.density_kg_per_m3", 8.33, ["density_kg_per_m3 = 8.33", "in kg/m3?"]),
     ("structure.kind", "utube", ["structure.kind = 'utube' must be one of", "u_tube"]),
-    ("structure.root.kind", "held", ["structure.root.kind = 'held' must be one of", "clamped"]),
     ("damping.other_ratio", 1.5, ["damping.other_ratio = 1.5", "not per cent"]),
     (
         "supports.0.stiffness_N_per_m",
@@ -206,20 +196,13 @@ REFUSALS = [
         0.8,
         ["supports[0].height_m = 0.8", "beyond the segment", "at most 0.7 m"],
     ),
-    ("supports.1.at_m", [-0.30, 0.0, 0.36], ["supports[1].at_m", "'right' overlaps 'left'"]),
     ("supports.1.name", "left", ["supports = 'left' names 2 supports"]),
     (
         "supports.1.centre_offset_m",
         [0.0, 0.3, 0.0],
         ["supports[1].centre_offset_m", "3 values", "transverse"],
     ),
-    (
-        "supports.1.centre_offset_m",
-        [0.0, 0.3],
-        ["supports[1].centre_offset_m = 0.3", "half the diameter", "in metres?"],
-    ),
     ("points.apex", [0.0, 0.02, 1.0], ["points.apex", "0.0200 m off the tube"]),
-    ("points.apex", [0.0, 1.0], ["points.apex = [0.0, 1.0] has 2 values", "x, y and z"]),
     (
         "identification.groups",
         [["left"], ["rigt"]],
@@ -249,11 +232,6 @@ REFUSALS = [
         ["steps_per_second = 20480", "omega x step = 2.3", "at most 1", "at least 47124"],
     ),
     (
-        "integration.scheme",
-        "euler",
-        ["integration.scheme = 'euler'", "must be 'exact' or 'newmark'"],
-    ),
-    (
         "integration.steps_per_second",
         50000,
         ["steps_per_second = 50000", "5 times a whole multiple", "51200 is near"],
@@ -263,18 +241,8 @@ REFUSALS = [
         4096,
         ["steps_per_second = 20480", "5 times a whole multiple", "by 2 or more", "40960 is near"],
     ),
-    (
-        "integration.steps_per_second",
-        49152,
-        ["steps_per_second = 49152", "5 times a whole multiple", "51200 is near"],
-    ),
     ("integration.steps_per_second", True, ["steps_per_second = True must be a number"]),
     ("integration.start_up_s", 0.0001, ["integration.start_up_s", "whole number of samples"]),
-    (
-        "record.sensors.points",
-        ["apex", "bend_45", "apex"],
-        ["record.sensors.points = 'apex'", "2 times"],
-    ),
     ("record.sensors.directions", ["x"], ["record.sensors.directions", "lacks 'y'"]),
     (
         "record.shape_line.direction",
@@ -282,19 +250,10 @@ REFUSALS = [
         ["record.shape_line.direction = 'z'", "not a direction of the sensors"],
     ),
     ("record.duration_s", 5.0, ["spectra.segment_s = 10.0", "longer than the record, 5 s"]),
-    ("spectra.overlap", 65, ["spectra.overlap = 65", "not per cent"]),
-    ("spectra.window", "hamming", ["spectra.window = 'hamming' must be 'hann'"]),
-    ("spectra.segment_s", 0.001, ["spectra.segment_s", "2.048 samples"]),
     (
         "identification.response_point",
         "shaker",
         ["identification.response_point = 'shaker'", "not recorded"],
-    ),
-    ("identification.peak_search_Hz", [45.0, 8.0], ["identification.peak_search_Hz", "ascending"]),
-    (
-        "identification.peak_search_Hz",
-        [300.0, 400.0],
-        ["identification.peak_search_Hz", "outside the excited band"],
     ),
     (
         "identification.lscf.band_Hz",
@@ -302,23 +261,11 @@ REFUSALS = [
         ["identification.lscf.band_Hz", "reaches above 800 Hz"],
     ),
     (
-        "identification.lscf.band_Hz",
-        [8.0, 8.3],
-        ["identification.lscf.band_Hz", "holds 3 lines of 0.1 Hz"],
-    ),
-    (
         "identification.broadband.band_Hz",
         [2.0, 99.0],
         ["identification.broadband.band_Hz", "beyond the excited band"],
     ),
-    (
-        "identification.stiffness_range_N_per_m",
-        [1e8, 1e3],
-        ["stiffness_range_N_per_m", "ascending"],
-    ),
     ("grid.load_rms_N", [1.0, 2.0, 1.0], ["grid.load_rms_N = 1.0", "2 times"]),
-    ("grid.load_rms_N.last", 0.01, ["grid.load_rms_N.last = 0.01", "above first"]),
-    ("grid.seeds", 2.5, ["grid.seeds = 2.5 must be a whole number"]),
     (
         "overlay.campaign",
         "no/such.nc",
@@ -365,11 +312,6 @@ def test_sections_of_every_kind_are_accepted(other_kinds, kind):
 
 STRUCTURE_REFUSALS = [
     # changes of the structure, what the sentence must hold
-    ({"section": {"kind": "square"}}, ["section.kind = 'square'", "'tube', 'round', 'rectangle'"]),
-    (
-        {"section": {"kind": "rectangle", "sides_m": [0.01]}},
-        ["section.sides_m = [0.01] has 1 values", "first and second axis"],
-    ),
     (
         {"section": SECTIONS["rectangle"] | {"first_axis": [2.0, 0.0, 0.0]}},
         ["section.first_axis", "is along the tube at its start, [1.0, 0.0, 0.0]", "across it"],
@@ -402,7 +344,6 @@ STRUCTURE_REFUSALS = [
         {"fluid": [WATER | {"to_m": [0.5, 0.0, 0.0]}, WATER | {"from_m": [0.4, 0.0, 0.0]}]},
         ["fluid[1] = 'outside' overlaps another fluid outside"],
     ),
-    ({"fluid": [WATER | {"to_m": [0.5, 0.1, 0.0]}]}, ["fluid[0].to_m", "0.1000 m off the tube"]),
     ({"fluid": [WATER | {"to_m": [0.0, 0.0, 0.0]}]}, ["fluid[0].to_m", "start of the fluid"]),
     (
         {
@@ -420,14 +361,9 @@ STRUCTURE_REFUSALS = [
         {"material": {"name": "inconel_600", "temperature_C": 700.0}},
         ["temperature_C = 700", "inconel_600 is known from 20 to 500 °C", "young_modulus_Pa"],
     ),
-    ({"material": {"name": "inconel"}}, ["material.name = 'inconel' must be 'inconel_600'"]),
     (
         {"material": {"young_modulus_Pa": 2.0e11, "poisson_ratio": 0.3}},
         ["material.density_kg_per_m3 is missing: give it, or a name"],
-    ),
-    (
-        {"material": OTHER_KINDS["structure"]["material"] | {"temperature_C": 20.0}},
-        ["material.temperature_C = 20", "no effect without a name"],
     ),
 ]
 
@@ -723,14 +659,9 @@ def test_a_study_name_is_a_short_name_of_a_folder(study, name):
     ("place", "value", "part"),
     [
         ("supports.0.stiffness_N_per_m", 1e30, "is beyond any quantity in SI units"),
-        ("supports.0.stiffness_N_per_m", -4e6, "must be > 0"),
         ("supports.0.stiffness_N_per_m", "nan", "must be a finite number"),
-        ("supports.0.gap_m", 0.2, "is larger than half the diameter"),
         ("supports.0.damping_N_s_per_m", float("inf"), "must be a finite number"),
         ("points.apex", [0, 0, 10**400], "points.apex"),
-        ("excitation.direction", [0, 0.0, 0], "is not a direction"),
-        ("excitation.band_Hz", [40.0, 40.0], "is not in ascending order"),
-        ("identification.stiffness_range_N_per_m", [1e8, 1e3], "is not in ascending order"),
         ("record.duration_s", 1e-12, "is 2.05e-09 samples"),
         ("grid.load_rms_N", {"first": 1.0, "last": 1.0001, "count": 1000}, "equal to 6 digits"),
         ("grid.seeds", 10000, "cases, at most 1000000"),

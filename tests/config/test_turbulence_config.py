@@ -54,15 +54,7 @@ def test_turbulence_on_the_study_is_accepted(study):
     [
         ("direction", [1.0, 0.0, 0.0], ["excitation.direction", "along the tube", "0.0, 1.0]"]),
         ("band_Hz", [0.0, 200.0], ["excitation.band_Hz = [0.0, 200.0]", "above 0 Hz"]),
-        ("band_Hz", [200.0, 5.0], ["excitation.band_Hz", "ascending"]),
         ("band_Hz", [5.0, 2000.0], ["steps_per_second", "2000 Hz", "at least 40000"]),
-        ("correlation_length_m", 0.0, ["correlation_length_m = 0.0", "in metres"]),
-        ("tolerance", 1.0, ["excitation.tolerance = 1.0", "0.01 for one per cent"]),
-        (
-            "stretches",
-            [{**LEG, "to_m": [-0.3, 0.1, 0.6]}],
-            ["stretches[0].to_m", "0.1000 m off the tube"],
-        ),
         (
             "stretches",
             [LEG, {"from_m": [-0.3, 0.0, 0.5], "to_m": [-0.3, 0.0, 0.7]}],
@@ -81,24 +73,8 @@ def test_turbulence_on_the_study_is_accepted(study):
         ),
         (
             "spectrum",
-            {
-                "kind": "reduced_table",
-                "reduced_frequency": [3.0, 0.01],
-                "reduced_psd": [0.1, 1e-6],
-                "velocity_m_per_s": 2.0,
-                "fluid_density_kg_per_m3": 750.0,
-            },
-            ["spectrum.reduced_frequency = [3.0, 0.01]", "ascending"],
-        ),
-        (
-            "spectrum",
             {**FORCE["spectrum"], "kind": "two_phase", "void_fraction": 80},
             ["void_fraction = 80", "80 % is 0.8"],
-        ),
-        (
-            "spectrum",
-            {**FORCE["spectrum"], "velocity_m_per_s": 0.0},
-            ["velocity_m_per_s = 0.0", "in m/s"],
         ),
     ],
 )

@@ -68,23 +68,6 @@ def test_cross_spectra_hold_the_delay_between_two_channels():
     np.testing.assert_allclose(cross[0, 0].real, psd_statistics(spectra.values)[0][0])
 
 
-@pytest.mark.parametrize(
-    "segment_s, overlap, averages",
-    [(10.0, 0.65, 17.8), (10.0, 0.5, 15.3), (5.0, 0.5, 34.2), (2.0, 0.5, 91.0), (1.0, 0.5, 183.9)],
-)
-def test_effective_averages_of_a_49_s_record(segment_s, overlap, averages):
-    assert effective_averages(49.0, 2048.0, settings(segment_s, overlap)) == pytest.approx(
-        averages, abs=0.06
-    )
-
-
-def test_bin_scatter_is_that_of_the_effective_averages():
-    signal = np.random.default_rng(5).standard_normal((40, 49 * 64))
-    mean = psd_statistics(segment_spectra(signal, 64.0, settings()).values)[0][:, 10:-10]
-    averages = effective_averages(49.0, 64.0, settings())
-    assert 2.0 / (mean.var() / mean.mean() ** 2) == pytest.approx(averages, rel=0.05)
-
-
 def test_a_segment_longer_than_the_record_is_an_error():
     with pytest.raises(ValueError, match="10 s does not fit in a record of 5 s"):
         segment_layout(5 * 256, RATE, 10.0, 0.65)

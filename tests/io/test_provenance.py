@@ -120,6 +120,7 @@ for name, imports in json.load(sys.stdin).items():
 """
 
 
+@pytest.mark.slow
 def test_imported_files_cover_what_python_loads():
     """The interpreter runs the imports of every script; it may load no file that the static reading
     of the imports does not list.

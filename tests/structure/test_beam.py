@@ -137,15 +137,6 @@ def test_stiffness_is_the_energy_of_the_shape_functions(beam):
     assert np.allclose(energy, stiffness, rtol=1e-6, atol=1e-6 * np.abs(stiffness).min())
 
 
-def test_curvature_is_the_derivative_of_rotation(beam):
-    plane = beam.planes[1]
-    xi, step, phi = np.linspace(0.1, 0.9, 5), 1.0e-6, plane.shear_parameter(LENGTH)
-    difference = (
-        bending_shapes(xi + step, LENGTH, phi)[1] - bending_shapes(xi - step, LENGTH, phi)[1]
-    ) / (2.0 * step * LENGTH)
-    assert np.allclose(bending_shapes(xi, LENGTH, phi)[2], difference, rtol=1e-7, atol=1e-6)
-
-
 def test_rigid_motion_costs_no_energy_and_has_the_element_mass(beam):
     axes = tilted_axes()
     stiffness, mass = element_matrices(beam, LENGTH, axes)

@@ -198,6 +198,7 @@ def test_the_container_copies_all_that_the_wheel_needs(tmp_path, archives, build
     assert names(wheel) == names(archives[0])
 
 
+@pytest.mark.slow
 def test_the_wheel_plans_a_study_as_the_checkout_does(environment, study, tmp_path):
     told = snakemake(environment, study("mine", "--example", "smoke"), "--dry-run")
     assert str(ROOT / "src") not in told
@@ -210,6 +211,7 @@ def test_the_wheel_plans_a_study_as_the_checkout_does(environment, study, tmp_pa
     assert planned(here.stdout + here.stderr) == jobs
 
 
+@pytest.mark.slow
 def test_a_broken_configuration_is_named_with_its_line(environment, study):
     folder = study("broken", "--example", "smoke")
     (folder / "config" / "study.yaml").write_text("study: mine\nseed: [1\nspectra: {}\n")
