@@ -54,6 +54,7 @@ def test_what_closes_the_spectra_of_free_runs_is_named(played):
     assert abs(fit.rows[0].from_value(60.0) - fit.x[0]) < 1.645 * fit.deviation[0]
 
 
+@pytest.mark.slow
 def test_free_runs_add_an_effect_to_one_that_leaves_spectra_off(played):
     """The first effect, a gap as it is, is what the holding force shows."""
     comparison, runs = played

@@ -13,6 +13,7 @@ from tests.support import joint
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.config.measured_structure import MeasuredStructure
 from vibroimpact.diagnosis.diagnose import run_diagnosis
+from vibroimpact.diagnosis.identified.identified import identified
 from vibroimpact.diagnosis.identified.levels import naming_split
 from vibroimpact.diagnosis.identified.local_laws import LAWS
 from vibroimpact.diagnosis.identified.search import leading
@@ -37,16 +38,15 @@ def runs():
     return joint.simulate()
 
 
-@functools.cache
-def judged(law):
-    """The Diagnosis of the records of a law, the third of four levels held out."""
+def campaign_of(law):
+    """The records of a law, the third of four levels held out."""
     force, response = runs()[law]
     names = [f"a{number + 1}" for number in range(3)]
     channels = [
         Channel(name, (float(number), 0.0, 0.0), UP, "m s-2", "acceleration")
         for number, name in enumerate(names)
     ]
-    campaign = campaign_dataset(
+    return campaign_dataset(
         force[:, None],
         response,
         channels,
@@ -60,7 +60,12 @@ def judged(law):
         transient_periods=2,
         antialias="none",
     )
-    return run_diagnosis(campaign, STATED)
+
+
+@functools.cache
+def judged(law):
+    """The Diagnosis of the records of a law."""
+    return run_diagnosis(campaign_of(law), STATED)
 
 
 def test_modes_of_the_lowest_level_are_those_of_the_masses():
@@ -77,7 +82,11 @@ def test_modes_of_the_lowest_level_are_those_of_the_masses():
 @pytest.mark.parametrize(
     ("law", "wanted"),
     [
-        ("friction", {"force": joint.SLIP, "stick_stiffness": joint.STICK}),
+        pytest.param(
+            "friction",
+            {"force": joint.SLIP, "stick_stiffness": joint.STICK},
+            marks=pytest.mark.slow,
+        ),
         ("clearance", {"half_gap": joint.HALF_GAP, "stiffness": joint.STOP}),
     ],
 )
@@ -93,7 +102,8 @@ def test_law_is_named_and_its_parameters_come_back(law, wanted):
 
 def test_the_equivalent_joint_softens():
     """A slider that slips is softer by up to its stick stiffness."""
-    change = judged("friction").identified.setting.ranking["joint"].k
+    own, _ = identified(campaign_of("friction"), STATED)
+    change = own.setting.ranking["joint"].k
     assert change[-1] == pytest.approx(-joint.STICK, rel=0.35) and change[0] == 0.0
 
 

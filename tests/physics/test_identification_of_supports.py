@@ -202,7 +202,10 @@ ODD_SPECTRA = {
 
 @pytest.mark.parametrize(
     ("kind", "groups"),
-    [*((kind, "all") for kind in ODD_SPECTRA), ("no motion", "each"), ("one line", "each")],
+    [
+        *((kind, "all") for kind in ODD_SPECTRA),
+        *((kind, "each") for kind in ("no motion", "one line", "no numbers")),
+    ],
 )
 def test_odd_spectra_give_a_reason_not_an_error(straight, straight_records, kind, groups):
     config, model = straight
