@@ -25,8 +25,8 @@ FIXED = {
     "deadline": None,
     "suppress_health_check": list(HealthCheck),
 }
-settings.register_profile("fast", max_examples=15, **FIXED)
-settings.register_profile("thorough", max_examples=150, **FIXED)
+settings.register_profile("fast", max_examples=25, **FIXED)
+settings.register_profile("thorough", max_examples=250, **FIXED)
 settings.register_profile("thousand", max_examples=1000, **FIXED)
 settings.load_profile("fast")
 

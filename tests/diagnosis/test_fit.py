@@ -53,6 +53,7 @@ def test_hidden_contact_is_measured_from_remote_sensors(comparison, hidden, star
     np.testing.assert_allclose(found.point.terms[0].values, hidden.values, atol=tolerance * size)
 
 
+@pytest.mark.slow
 def test_a_coordinate_that_nothing_shows_holds_no_other(comparison):
     """The translation of a root, as good as clamped beside its rotation."""
     size = comparison.sizes["tube_rotation"]

@@ -84,27 +84,6 @@ def test_every_verdict_has_its_sentence_and_page(kind):
     assert sentence.split(" (")[0] in page and ("Measure next" in page) == (kind == "ambiguous")
 
 
-def test_region_names_each_nearby_mode_once():
-    region = made_up_verdict().to_values()["regions"][0]
-    page = discrepancy_page(
-        "campaign",
-        made_up_verdict(regions=[region | {"nearest_modes_Hz": [104.45, 104.68, 171.12, 171.75]}]),
-        [],
-    )
-    assert "<td>104, 105, 171, 172</td>" in page
-    assert "<td>104, 171</td>" in discrepancy_page(
-        "campaign",
-        made_up_verdict(regions=[region | {"nearest_modes_Hz": [104.41, 104.42, 171.1]}]),
-        [],
-    )
-    without = {
-        key: region[key] for key in region if key != "nearest_modes_Hz"
-    }  # a structure that is known by its measured responses alone
-    assert "nearest modes" not in discrepancy_page(
-        "campaign", made_up_verdict(regions=[without]), []
-    )
-
-
 STORY = (
     "The model lacks",
     "Probability",

@@ -128,7 +128,7 @@ def test_without_a_force_pole_and_shape_return_k(rattling):
 def test_unequal_supports_are_told_apart():
     supports = smoke().model_dump(mode="json")["supports"]
     supports[1]["gap_factor"] = 0.4
-    fewer = {"grid.seeds": 2, "grid.load_rms_N": [20.0]}
+    fewer = {"grid.seeds": 1, "grid.load_rms_N": [20.0]}
     config = smoke(supports=supports, **{"identification.groups": "each"} | fewer)
     model, records, study = studied(config)
     found = equivalent_of(campaign_of_records(config, model, records, SENSORS), config)

@@ -44,7 +44,6 @@ from vibroimpact.reports.figures.study.cases_of_gap import (
     spread_loads,
     transition_load,
 )
-from vibroimpact.reports.figures.study.linear_limits import HELD, driven_frequencies
 from vibroimpact.reports.figures.style import COLUMNS, label_of, shown
 from vibroimpact.structure.tube import build_structure
 from vibroimpact.study.case_spectra import case_spectra
@@ -275,21 +274,6 @@ def test_columns_of_different_lengths_are_refused():
 
 def test_every_column_has_a_label_with_its_unit():
     assert [label_of(name) for name in COLUMNS if not UNIT.search(label_of(name))] == []
-
-
-def test_first_frequency_by_number_of_contact_points(study_config):
-    # Stand-in tube, two independent codes agreeing, 40 elements in the bend.
-    table = {
-        4.0e6: {1: 27.751, 2: 28.215, 3: 28.069, 5: 27.993, 9: 27.954},
-        1.0e9: {1: 28.186, 2: 33.621, 3: 33.516, 5: 33.331, 9: 33.173},
-    }
-    for points in contact.POINTS:
-        model = contact.model_with_points(
-            StageSettings(stage_params(study_config, "figures_model")), points
-        )
-        found = driven_frequencies(model, [*table], 1)[:, 0]
-        np.testing.assert_allclose(found, [values[points] for values in table.values()], rtol=1e-3)
-    assert driven_frequencies(model, HELD)[0, 0] == pytest.approx(34.08, abs=0.05)
 
 
 def test_free_modes_are_those_of_the_testbed(study_config):

@@ -2,15 +2,10 @@
 the rows.
 """
 
-import csv
-from types import SimpleNamespace
-
 import pytest
 
 from vibroimpact.io.records import RecordError
 from vibroimpact.io.stopwatch import Stopwatch, seconds_in
-from vibroimpact.reports.figures.drawing import drawn
-from vibroimpact.reports.figures.study.timing import timing
 from vibroimpact.study.timing import study_timing, timing_so_far
 
 HEADER = "s\th:m:s\tmax_rss\tmax_vms\tmax_uss\tmax_pss\tio_in\tio_out\tmean_load\tcpu_time"
@@ -81,26 +76,6 @@ def test_a_missing_file_is_named(paths):
     paths[1][0].unlink()
     with pytest.raises(RecordError, match="simulate_load_0.5.log: cannot be read"):
         study_timing(*paths)
-
-
-def test_the_figure_shows_every_part_of_every_rule(paths, tmp_path):
-    rows = study_timing(*paths)
-    sheet = drawn(timing(SimpleNamespace(study="mine"), rows))
-    sheet.save(tmp_path)
-    with open(tmp_path / "timing.csv", newline="", encoding="utf-8") as file:
-        shown = {(row["rule"], row["curve"]): float(row["cpu_s"]) for row in csv.DictReader(file)}
-    assert shown == {
-        (row["rule"], row["part"]): row["cpu_s"]
-        for row in rows
-        if row["part"] and row["rule"] != "all"
-    }
-    assert (
-        tmp_path / "timing.png"
-    ).is_file() and "69 % of it in kernel, spectra and identification" in (
-        tmp_path / "timing.txt"
-    ).read_text()
-    widths = [bar.get_width() for bar in sheet.axes["main"].patches if bar.get_width() > 0.0]
-    assert sorted(widths) == sorted(shown.values())
 
 
 def test_stopwatch_times_are_read_back_from_the_log():
