@@ -121,6 +121,7 @@ def _aligned(cells: list[tuple[str, ...]]) -> list[str]:
 def _simulated(config: Config, folder: str | None) -> list[str]:
     """Return the lines of the tube with gaps; write its tables and figures into a folder."""
     from .io.records import write_table
+    from .reports.figures.drawing import save_plots
     from .reports.figures.flow_sweep import flow_sweep_figures
     from .study.flow_sweep import flow_sweep
 
@@ -128,8 +129,7 @@ def _simulated(config: Config, folder: str | None) -> list[str]:
     if folder:
         for name, rows in found.tables().items():
             write_table(rows, Path(folder) / f"{name}.csv")
-        for sheet in flow_sweep_figures(found):
-            sheet.save(folder)
+        save_plots(flow_sweep_figures(found), folder)
     cells: list[tuple[str, ...]] = [SIMULATED]
     for own in found.onsets:
         speeds = (

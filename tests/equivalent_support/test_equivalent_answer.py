@@ -1,9 +1,9 @@
-"""The recommended k and c of a study, from the tables of today and from those with directions."""
+"""The recommended k and c of a study, of one group and of several directions."""
 
 import pytest
 
-from tests.support.made_up_study import GAPS, LOADS, equivalent_rows, summary_rows
-from vibroimpact.reports.equivalent_answer import answers, unmoved, with_places
+from tests.support.made_up_study import GAPS, LOADS, rows_of_two_directions, summary_rows
+from vibroimpact.reports.equivalent_answer import answers, unmoved
 from vibroimpact.study.reasons import NOT_MOVED
 
 
@@ -15,7 +15,7 @@ def found(rows, gap, load, direction="y"):
 
 
 def test_table_of_recommended_values_is_taken_as_it_is():
-    rows = answers(summary_rows(), equivalent_rows(), "y")
+    rows = answers(summary_rows(), rows_of_two_directions())
     assert len(rows) == len(GAPS) * len(LOADS) * 2
     row = found(rows, 5.0e-5, 10.0, "y")
     # Twice 10 x 10 N / 0.05 mm.
@@ -27,22 +27,16 @@ def test_table_of_recommended_values_is_taken_as_it_is():
 
 
 def test_curves_are_in_order_of_gap_group_direction_and_load():
-    rows = answers(summary_rows(), equivalent_rows()[::-1], "y")
+    rows = answers(summary_rows(), rows_of_two_directions()[::-1])
     assert [row.place for row in rows[:: len(LOADS)]] == [
         (gap, "plates", direction) for gap in GAPS for direction in "xy"
     ]
     assert [row.load_rms_N for row in rows[: len(LOADS)]] == list(LOADS)
 
 
-def test_a_group_named_by_a_number_is_a_text():
-    row = with_places([{"gap_m": 1e-4, "group": 1, "direction": "x"}], "y")[0]
-    assert (row["group"], row["direction"]) == ("1", "x")
-    assert with_places([{"gap_m": 1e-4}], "y")[0]["direction"] == "y"
-    assert with_places([{"gap_m": 1e-4, "group": ""}], "y")[0]["group"] == "all"
-
-
 def test_directions_that_nothing_moves_are_named_not_judged():
-    still = [row | {"reason_k": NOT_MOVED} for row in equivalent_rows() if row["direction"] == "x"]
-    rows = [row for row in equivalent_rows() if row["direction"] == "y"]
+    both = rows_of_two_directions()
+    still = [row | {"reason_k": NOT_MOVED} for row in both if row["direction"] == "x"]
+    rows = [row for row in both if row["direction"] == "y"]
     assert unmoved(rows + still) == [("plates", "x")]
-    assert {row.direction for row in answers(summary_rows(), rows + still, "y")} == {"y"}
+    assert {row.direction for row in answers(summary_rows(), rows + still)} == {"y"}

@@ -8,6 +8,7 @@ import pytest
 import vibroimpact as vi
 from vibroimpact.cli import main
 from vibroimpact.flow.limit_cycle import describing_stiffness
+from vibroimpact.reports.figures.drawing import drawn
 from vibroimpact.reports.figures.flow_sweep import flow_sweep_figures
 from vibroimpact.study.flow_sweep import (
     Equivalent,
@@ -72,9 +73,9 @@ def test_sweep_of_the_example():
         assert fast.contact_fraction > 3.0 * still.contact_fraction
         # ten times above the critical velocity of the open supports the bars still hold the tube
         assert 1.25 * still.rms_m < fast.rms_m < 2.0 * 0.2e-3
-    (sheet,) = flow_sweep_figures(found)
-    drawn = [row for row in sheet.rows() if row["curve"] == "0.1 N, small start"]
-    assert len(drawn) == 6
+    (sheet,) = map(drawn, flow_sweep_figures(found))
+    small = [row for row in sheet.rows() if row["curve"] == "0.1 N, small start"]
+    assert len(small) == 6
 
 
 def test_growth_without_bound_is_told():
@@ -123,7 +124,7 @@ def test_a_sweep_with_turbulence_that_follows():
     assert slow.k_N_per_m == 0.0 < fast.k_N_per_m
     assert 0.3 < found.onsets[0].equivalent_m_per_s < 0.4
     assert all(run.fluid_power_W == 0.0 for run in found.runs if not run.coupled)
-    (sheet,) = flow_sweep_figures(found)
+    (sheet,) = map(drawn, flow_sweep_figures(found))
     alone = [row for row in sheet.rows() if "turbulence alone" in row["curve"]]
     assert len(alone) == 2
 

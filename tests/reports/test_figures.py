@@ -45,10 +45,12 @@ from vibroimpact.reports.figures.study.cases_of_gap import (
     transition_load,
 )
 from vibroimpact.reports.figures.style import COLUMNS, label_of, shown
+from vibroimpact.reports.study_statistics import StudyStatistics
 from vibroimpact.structure.tube import build_structure
 from vibroimpact.study.case_spectra import case_spectra
-from vibroimpact.study.cases import all_cases, nearest_loads
+from vibroimpact.study.cases import all_cases, case_from_id, nearest_loads
 from vibroimpact.study.simulation import simulate_cases
+from vibroimpact.study.statistics_table import statistics_rows
 from vibroimpact.study.synthetic_campaign import synthetic_campaign
 
 ROOT = Path(__file__).parents[2]
@@ -139,12 +141,19 @@ def sheets(config, study, tmp_path_factory):
     plots += [
         equivalent.figure_13_equivalent_support(part, model, rows),
         equivalent.collapse(part, model, rows),
-        checks.energy_balance(part, found["records"]),
-        checks.contact_statistics(part, model, found["records"]),
+        checks.energy_balance(part, *statistics_of(found["records"])),
+        checks.contact_statistics(part, model, statistics_of(found["records"])[0]),
     ]
     found = [*map(drawn, plots)]
     save_plots(found, folder)
     return {sheet.name: sheet for sheet in found}, folder
+
+
+def statistics_of(records):
+    """The StudyStatistics of {Case: Dataset}, and the record whose energies are drawn."""
+    rows = [row for record in records.values() for row in statistics_rows(record)]
+    file = checks.file_of_energies([f"{case.id}.nc" for case in records])
+    return StudyStatistics([*records], rows), records[case_from_id(Path(file).stem)]
 
 
 def figures_identification(config, model, curves, spectra, rows):

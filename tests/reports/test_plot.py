@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from vibroimpact.reports.figures.drawing import drawn
-from vibroimpact.reports.figures.interactive.page_plot import PagePlot, numbers
+from vibroimpact.reports.figures.interactive.page_plot import Control, PagePlot, numbers
 from vibroimpact.reports.figures.plot import Axis, Bars, Mark, Panel, Plot, Series, Span, extent
 
 LOADS, STRESS = [0.5, 1.0, 4.0], [1.0e6, 0.0, 9.0e6]
@@ -23,7 +23,7 @@ def stress_panel(log=False):
 
 def traces(panel):
     """The traces and the layout that plotly.js gets of a panel."""
-    page = PagePlot("stress", "Stress", "A caption.", {"": panel}).drawn()
+    page = PagePlot("stress", "Stress", "A caption.", {(): panel}).drawn()
     return page["frames"][""], page["layout"]
 
 
@@ -74,17 +74,18 @@ def test_a_panel_without_curves_says_why():
     empty = Panel(Axis("load_rms_N"), Axis("stress_Pa"), [], note="no contact")
     sheet = drawn(Plot("empty", "Empty", "A caption.", {"main": empty}))
     assert [text.get_text() for text in sheet.axes["main"].texts] == ["no contact"]
-    assert sheet.tables == [] and not PagePlot("a", "A", "B.", {"": empty}).has_traces()
+    assert sheet.tables == [] and not PagePlot("a", "A", "B.", {(): empty}).has_traces()
 
 
 def test_long_x_values_are_written_once_for_all_frames():
     frequency = np.linspace(1.0, 2.0, 50)
     axes = Axis("frequency_Hz"), Axis("psd_m2_per_Hz", True)
     frames = {
-        key: Panel(*axes, [Series("psd", frequency, scale * frequency)])
-        for key, scale in (("0", 1.0), ("1", 2.0))
+        (scale,): Panel(*axes, [Series("psd", frequency, scale * frequency)])
+        for scale in (1.0, 2.0)
     }
-    page = PagePlot("psd", "PSD", "A caption.", frames, ("load",)).drawn()
+    control = Control("load", "Load", ["1", "2"], [1.0, 2.0])
+    page = PagePlot("psd", "PSD", "A caption.", frames, ("load",)).drawn([control])
     (name,) = page["shared"]
     assert page["shared"][name] == numbers(frequency)
     assert {trace["x"] for found in page["frames"].values() for trace in found} == {f"@{name}"}

@@ -5,6 +5,7 @@ has its caption.
 import json
 import math
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -12,7 +13,13 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from tests.support.made_up_study import GAPS, LOADS, MadeUpStudy, equivalent_rows, made_up_config
+from tests.support.made_up_study import (
+    GAPS,
+    LOADS,
+    MadeUpStudy,
+    made_up_config,
+    rows_of_two_directions,
+)
 from tests.support.one_mass import one_mass
 from vibroimpact.config.reading import check_config, load_config
 from vibroimpact.config.stage_settings import StageSettings
@@ -22,9 +29,12 @@ from vibroimpact.reports.captions import CATEGORIES, CaptionError, read_caption
 from vibroimpact.reports.centred_wear import centred_sentence
 from vibroimpact.reports.equivalent_answer import Answer, Value
 from vibroimpact.reports.figures.interactive.equivalent import equivalent_plots
-from vibroimpact.reports.figures.interactive.shape import contact_along_plot, shapes_of
+from vibroimpact.reports.figures.interactive.page_plot import Control
+from vibroimpact.reports.figures.interactive.shape import shapes_of
 from vibroimpact.reports.figures.interactive.spectrum import band_of, spectra_of_series
+from vibroimpact.reports.figures.interactive.statistics import contact_plots
 from vibroimpact.reports.figures.interactive.study_plots import MOST_FRAMES, shown_loads
+from vibroimpact.reports.figures.plot import Axis
 from vibroimpact.reports.study_statistics import study_statistics
 from vibroimpact.reports.study_tables import answer_table, reason_table
 from vibroimpact.reports.study_words import (
@@ -84,6 +94,11 @@ class Page(HTMLParser):
         return {plot["name"]: plot for plot in data["plots"]}
 
 
+def controls(**keys):
+    """The Controls of a page with some keys."""
+    return [Control(name, name, [*map(str, own)], own) for name, own in keys.items()]
+
+
 @pytest.fixture(scope="module")
 def model():
     """The reduced model of the smoke study."""
@@ -105,7 +120,7 @@ def page(study):
 @pytest.fixture(scope="module")
 def two_directions(model):
     """The page of a study with equivalent.csv and two directions."""
-    return Page(MadeUpStudy(model, equivalent_rows()).page())
+    return Page(MadeUpStudy(model, rows_of_two_directions()).page())
 
 
 def test_table_of_the_page_holds_the_recommended_values(page):
@@ -142,7 +157,7 @@ def test_loads_whose_reasons_differ_in_numbers_share_a_row(study):
         )
         for load in LOADS
     ]
-    table = reason_table(rows, study.content.statistics, True, "N")
+    table = reason_table(replace(study.content, answers=rows))
     assert [row[3:5] for row in table.rows] == [
         ("0.1 to 10", "k: not resolved"),
         ("0.1 to 1", "c: not resolved"),
@@ -179,7 +194,7 @@ def test_stress_above_the_limit_is_flagged(page):
 
 
 def test_headline_counts_agreement_of_stiffness_and_damping(study):
-    told = study.content.headline()
+    told = study.content.found
     assert told[0] == (
         "Stiffness k: 4 of 4 pairs of load and gap that the methods resolve agree on k within 10 %;"
         " in 2 k is not resolved."
@@ -212,17 +227,15 @@ def test_a_bounded_stiffness_is_shown_everywhere(study):
     text = "k < 2.45 kN/m: the tube hardly touches, 0.3 % of the time"
     lost = Value(*[math.nan] * 3, "unresolved", text)
     row = Answer(2.0e-4, 0.1, "all", "y", lost, lost, 2.45e3, 0.003)
-    assert answer_table([row], False, "N").rows[0][2:5] == ("< 2450", "-", "upper bound")
-    ((gap, loads, value, why, touching),) = reason_table(
-        [row], study.content.statistics, False, "N"
-    ).rows
+    content = replace(study.content, answers=[row])
+    assert answer_table(content, 2.0e-4).rows[0][2:5] == ("< 2450", "-", "upper bound")
+    ((gap, loads, value, why, touching),) = reason_table(content).rows
     assert (gap, loads, value, why) == ("0.2", "0.1", "k: upper bound", text) and touching == "0.3"
     assert answer_in_words(row, ("kN/m", 1e-3)) == text + "."
-    k, _, _, agreement, _ = equivalent_plots([row], [], "Load (N RMS)")
-    (trace,) = k.drawn()["frames"]["0,0"]
+    k, _ = equivalent_plots([row], [], Axis("load_rms_N", True))
+    ((trace,),) = k.drawn(controls(gap=[2.0e-4], place=[("all", "y")]))["frames"].values()
     assert (trace["name"], trace["y"]) == ("upper bound", [2450.0])
-    assert agreement.drawn()["frames"]["0"][0]["text"] == [["<"]]
-    assert "in 1 the tube hardly touches" in headline(study.config, [row])[0]
+    assert "in 1 the tube hardly touches" in headline(study.config, [row], "N")[0]
 
 
 def test_every_load_and_gap_has_its_spectrum(page, study):
@@ -291,15 +304,6 @@ def test_directions_have_curves_of_their_own(two_directions):
     assert "control-place" in two_directions.ids
 
 
-def test_agreement_map_shows_every_case_with_its_reason(page):
-    (cells,) = page.plots()["agreement_c"]["frames"]["0"]
-    assert cells["text"] == [["–", "✓", "≠"]] * 2
-    nothing, agree, apart = cells["customdata"][0]
-    assert nothing == "load 0.1, gap 0.2 mm<br>no method resolves k; LSCF pole: no value"
-    assert agree.endswith("<br>c = 50 N s/m, agree")
-    assert "<br>c = 750 N s/m, the methods are more than 25 %" in apart
-
-
 def test_energy_residuals_stand_beside_their_limits(page):
     rows = page.table("accepted (-)", "within")
     work = next(row for row in rows if row["energy balance"].startswith("with the work"))
@@ -341,12 +345,10 @@ def test_every_axis_of_the_page_has_a_title_with_its_unit(page, two_directions):
 
 def test_without_identification_contact_and_stress_are_shown(model):
     study = MadeUpStudy(model)
-    study.content = type(study.content)(
-        study.config, [], study.content.statistics, study.content.limits, study.content.provenance
-    )
+    study.content = replace(study.content, answers=[])
     study.paths = []
     found = Page(study.page())
-    assert {"contact_fraction", "stress", "contact_along", "energy"} <= set(found.plots())
+    assert {"contact_fraction", "stress", "stress_sections", "energy"} <= set(found.plots())
     assert "equivalent_k" not in found.plots() and "spectrum" not in found.plots()
     assert "answer" not in found.ids and "contact" in found.ids
 
@@ -388,7 +390,7 @@ def test_wear_of_a_centred_tube_has_its_caveat():
 
 
 def test_what_is_to_be_known_of_contact_is_said_with_its_case(study):
-    assert study.content.contact() == [
+    assert study.content.found[5:] == [
         "Most contact: 80 % of the time, at 10 N RMS and a gap of 0.2 mm.",
         "Largest wear work rate: 0.008 W, at 10 N RMS and a gap of 0.2 mm.",
         "Largest stress: 250 MPa. Above the limit of 240 MPa: at 10 N RMS and a gap of 0.2 mm; at"
@@ -405,7 +407,7 @@ def test_what_is_to_be_known_of_contact_is_said_with_its_case(study):
     )
 
 
-def test_supports_of_a_chain_stand_side_by_side_by_name():
+def test_supports_of_a_chain_have_curves_by_name():
     flat = {"kind": "planes", "normals_deg": [0.0]}
     stop = {"name": "stop", "point": "mass", "stiffness_N_per_m": 1.0e6, "profile": flat}
     grid = {"load_rms_N": [1.0], "gap_m": [1.0e-3], "seeds": 1}
@@ -417,10 +419,10 @@ def test_supports_of_a_chain_stand_side_by_side_by_name():
         {"load_rms_N": case.load_rms_N, "gap_m": case.gap_m, "seed": 0},
     )
     statistics = study_statistics([f"{case.id}.nc"], lambda path, names=None: touched)
-    plot = contact_along_plot(statistics, [("0,0", (1.0e-3, 1.0))], build_model(config))
-    (bars,) = plot.drawn()["frames"]["0,0"]
-    assert (bars["x"], bars["y"]) == (["stop"], [25.0])
-    assert plot.drawn()["layout"]["xaxis"]["type"] == "category" and statistics.sections == []
+    (plot,) = contact_plots(statistics, Axis("load_rms_N", True), "")
+    (curve,) = plot.drawn(controls(gap=[1.0e-3]))["frames"]["0"]
+    assert (curve["name"], curve["x"], curve["y"]) == ("stop", [1.0], [25.0])
+    assert plot.name == "contact_fraction" and statistics.sections == []
 
 
 def test_slider_of_a_large_study_keeps_both_ends():

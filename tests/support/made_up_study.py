@@ -15,10 +15,11 @@ from vibroimpact.reports.captions import Caption
 from vibroimpact.reports.equivalent_answer import answers
 from vibroimpact.reports.figures.interactive.study_plots import StudyFiles, study_plots
 from vibroimpact.reports.figures.study.checks import limits
-from vibroimpact.reports.study_content import StudyContent, provenance
+from vibroimpact.reports.study_content import provenance, study_content
 from vibroimpact.reports.study_page import Picture, study_page
 from vibroimpact.reports.study_statistics import study_statistics
 from vibroimpact.study.cases import all_cases
+from vibroimpact.study.equivalent_table import equivalent_rows
 
 ROOT = Path(__file__).parents[2]
 LOADS, GAPS, SEEDS = (0.1, 1.0, 10.0), (2.0e-4, 5.0e-5), 2
@@ -50,7 +51,7 @@ def damping(gap_m, load_rms_N, method):
 
 
 def summary_rows():
-    """Rows of consistency_summary.csv as they are written today, without group and direction."""
+    """Rows of consistency_summary.csv."""
     rows = []
     for gap in GAPS:
         for load in LOADS:
@@ -61,6 +62,8 @@ def summary_rows():
                         "gap_m": gap,
                         "load_rms_N": load,
                         "load_over_gap": load / gap,
+                        "group": "all",
+                        "direction": "y",
                         "method": method,
                         "k_median": k,
                         "k_low": 0.95 * k,
@@ -69,13 +72,13 @@ def summary_rows():
                         "c_low": 0.6 * c,
                         "c_high": 1.5 * c,
                         "ratio": 1.0,
-                        "verdict": "agree" if load >= RESOLVED_FROM else "unresolved",
+                        "verdict_k": "agree" if load >= RESOLVED_FROM else "unresolved",
                     }
                 )
     return rows
 
 
-def equivalent_rows():
+def rows_of_two_directions():
     """Rows of equivalent.csv: two directions, with reasons where there is no value."""
     rows = []
     for gap in GAPS:
@@ -102,6 +105,8 @@ def equivalent_rows():
                         "agreement_c": "spread" if there else "unresolved",
                         "reason_k": "" if there else f"k = {100 * load:.3g} N/m is too small",
                         "reason_c": "" if there else "no pole",
+                        "k_bound": np.nan,
+                        "contact_fraction": np.nan,
                     }
                 )
     return rows
@@ -157,7 +162,7 @@ def curves(case, points):
 class MadeUpStudy:
     """The made-up study: its content, its files and its page.
 
-    equivalent: rows of equivalent.csv, None for the tables of today.
+    equivalent: rows of equivalent.csv, None for those of the summary.
     """
 
     def __init__(self, model, equivalent=None):
@@ -173,15 +178,15 @@ class MadeUpStudy:
         }
         statistics = study_statistics(self.paths, lambda path, names=None: self.records[path])
         self.summary = summary_rows()
-        self.content = StudyContent(
+        self.content = study_content(
             self.config,
-            answers(self.summary, equivalent, "y"),
+            answers(self.summary, equivalent or equivalent_rows(self.summary)),
             statistics,
-            limits(self.config.integration),
             provenance(
                 {"study": "made_up", "grid": {"seeds": SEEDS}},
                 {"simulation": {"config_digest": "0a1b", "source_digest": "2c3d", "versions": "v"}},
             ),
+            limits=limits(self.config.integration),
         )
 
     def read(self, path, names=None):

@@ -29,7 +29,7 @@ def reliability_figure(curve):
     stated, true, low, high = (
         np.array([row[key] for row in curve]) for key in ("stated", "true", "low", "high")
     )
-    sheet.bars(
+    sheet.line(
         axes,
         ("stated_probability", stated),
         ("true_share", true),
@@ -37,6 +37,7 @@ def reliability_figure(curve):
         low,
         high,
         {"statements": [row["statements"] for row in curve]},
+        band=False,
         fmt="o",
         color=BLUE,
     )

@@ -80,7 +80,7 @@ def _curve(sheet, axes, strength, found):
         np.argsort(strength, kind="stable"), min(BINS, max(1, found.size // FEWEST))
     )
     bounds = np.array([wilson(found[group].sum(), group.size) for group in order])
-    sheet.bars(
+    sheet.line(
         axes,
         ("strength_over_floor", [np.median(strength[group]) for group in order]),
         ("found", [found[group].mean() for group in order]),
@@ -88,6 +88,7 @@ def _curve(sheet, axes, strength, found):
         bounds[:, 0],
         bounds[:, 1],
         {"campaigns": [group.size for group in order]},
+        band=False,
         fmt="o",
         color=BLACK,
         label="campaigns in groups",
@@ -105,14 +106,9 @@ def _curve(sheet, axes, strength, found):
         )
     axes.axhline(shown("found", POWER), color=GREEN, linewidth=0.8, linestyle=":")
     if np.isfinite(limit["limit"]):
-        sheet.mark(
-            axes,
-            "strength_over_floor",
-            limit["limit"],
-            "limit",
-            color=GREEN,
-            label="detection limit, its 95 % interval",
-        )
+        sheet.record(axes, "limit", strength_over_floor=limit["limit"])
+        label = "detection limit, its 95 % interval"
+        axes.axvline(float(shown("strength_over_floor", limit["limit"])), color=GREEN, label=label)
         low, high = (
             np.nan_to_num(limit[key], nan=at)
             for key, at in (("low", strength.min()), ("high", strength.max()))

@@ -201,7 +201,7 @@ def _panel(sheet, axes, rows, names, curves):
             len(curves) + 1
         ) * (index - 0.5 * (len(curves) - 1))
         label = f"{AXIS_NAMES[axis][0]}: {value:g} {AXIS_NAMES[axis][1]}"
-        sheet.bars(
+        sheet.line(
             axes,
             ("statistic_number", places),
             ("statistic_difference", middle),
@@ -209,6 +209,7 @@ def _panel(sheet, axes, rows, names, curves):
             middle - STANDARD_ERRORS * half,
             middle + STANDARD_ERRORS * half,
             tags={"statistic": [row["statistic"] for row in own]},
+            band=False,
             color=colour,
             marker=marker,
             linestyle="none",

@@ -6,7 +6,7 @@ import numpy as np
 
 from vibroimpact.reports.figures.columns import COLUMNS
 from vibroimpact.reports.figures.sheet import Sheet
-from vibroimpact.reports.figures.style import BLACK, BLUE, GREY, ORANGE, SKY
+from vibroimpact.reports.figures.style import BLACK, BLUE, GREY, ORANGE, SKY, shown
 
 POINT = 0  # the lower edge of the left plate
 ZOOM_S = (0.088, 0.100)
@@ -83,16 +83,10 @@ def _traces(sheet, impacts, gap_m):
             **style,
         )
     for side in (-gap_m, gap_m):
-        sheet.mark(
-            sheet.axes["displacement"],
-            "across_plane_m",
-            side,
-            "gap",
-            vertical=False,
-            color=GREY,
-            linestyle=":",
-            linewidth=0.9,
-        )
+        axes = sheet.axes["displacement"]
+        sheet.record(axes, "gap", across_plane_m=side)
+        place = float(shown("across_plane_m", side))
+        axes.axhline(place, color=GREY, linestyle=":", linewidth=0.9)
     sheet.axes["force"].legend(loc="best")
 
 

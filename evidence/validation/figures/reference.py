@@ -50,7 +50,7 @@ def reference(checks, order):
     )
     axes.set_xscale("log")
     axes.set_yscale("log")
-    sheet.legend(axes, loc="upper left")
+    axes.legend(loc="upper left")
     rows = [
         row
         for row in checks

@@ -16,7 +16,7 @@ from vibroimpact.effects.places import place_in_words
 from vibroimpact.effects.registry import EFFECTS, effects_in_words
 
 from .explanations import best_places, chance_text, explanations_of
-from .number_text import digits, percent
+from .number_text import digits, percent, span
 from .page import embedded, rendered
 from .table import table_of
 from .verdict_words import (
@@ -74,6 +74,9 @@ def discrepancy_page(
         f"{test}, {TESTS[test]}" if test in TESTS else str(test)
         for test in verdict.broken_invariances
     ]
+    sections: dict[str, list] = {section: [] for section in (*SECTIONS.values(), "adding")}
+    for figure in embedded(figures):
+        sections[SECTIONS.get(figure["name"], "adding")].append(figure)
     return rendered(
         "discrepancy_page.html",
         name=name,
@@ -83,10 +86,11 @@ def discrepancy_page(
         withdrawn=withdrawn_sentence(verdict),
         completed=bool(verdict.shown_effects()),
         heading=HEADINGS.get(verdict.verdict, "The structure"),
-        figures=_by_section(figures),
-        probabilities=_probabilities(verdict),
-        p_before=_chance(verdict.p_global_before),
-        p_after=_chance(verdict.p_global_after),
+        figures=sections,
+        probabilities=explanations_of(verdict)[:MOST_ROWS],
+        bar_px=BAR_PX,
+        chance_text=chance_text,
+        probability_text=probability_text,
         regions=_regions(verdict),
         where_it_shows=where_it_shows(verdict),
         broken="; ".join(tests),
@@ -100,19 +104,6 @@ def discrepancy_page(
         stages=_stages(verdict),
         provenance=[*_flat(verdict.provenance)],
     )
-
-
-def _chance(value):
-    """Return a p-value as text, None if there is none."""
-    return None if value is None else probability_text(value)
-
-
-def _by_section(figures):
-    """Return {section: [{name, caption, data, percent}]} of PNG files."""
-    sections: dict[str, list] = {section: [] for section in (*SECTIONS.values(), "adding")}
-    for figure in embedded(figures):
-        sections[SECTIONS.get(figure["name"], "adding")].append(figure)
-    return sections
 
 
 def _ranking(verdict):
@@ -134,18 +125,6 @@ def _ranking(verdict):
     scored = any(row.heldout_score is not None for row in verdict.ranking)
     hidden = [] if explanations_of(verdict) else ["probability"]
     return table_of(rows, hidden + ([] if scored else ["score on held-out records"]))
-
-
-def _probabilities(verdict):
-    """Return [{words, probability, width of its bar in pixels}], the most probable first."""
-    return [
-        {
-            "words": row.words,
-            "probability": chance_text(row.probability),
-            "width": round(BAR_PX * row.probability),
-        }
-        for row in explanations_of(verdict)[:MOST_ROWS]
-    ]
 
 
 def _checks(verdict):
@@ -186,8 +165,10 @@ def _effects(verdict):
             "mechanism": known.explanation if known else "",
             "family": effect.family or "",
             "law fits": effect.law_fits or "",
-            "where": _where(effect.location or "all", known),
+            "where": place_in_words(effect.location or "all"),
         }
+        if known and known.acts_on == "contact" and effect.location in ("all", ""):
+            head["where"] = "all supports"
         for cells in [*map(_parameter, effect.parameters.items())] or [NO_PARAMETER]:
             rows.append({**head, **cells})
             head = dict.fromkeys(head, "")
@@ -201,25 +182,13 @@ NO_PARAMETER = dict.fromkeys(("parameter", "value", "90 % interval", "unit"), ""
 def _parameter(item):
     """Return the cells of a (name, value) of an effect."""
     name, value = item[0], for_reading(item[1])
+    known = value["low"] is not None and value["high"] is not None
     return {
         "parameter": name.replace("_", " "),
         "value": digits(value["value"]),
-        "90 % interval": _interval(value),
+        "90 % interval": span(value["low"], value["high"]) if known else "not known",
         "unit": unit_text(value["unit"]).strip() or "-",
     }
-
-
-def _interval(value):
-    """Return "0.128 to 0.171", "not known" if an end is missing."""
-    if value["low"] is None or value["high"] is None:
-        return "not known"
-    return f"{digits(value['low'])} to {digits(value['high'])}"
-
-
-def _where(location, effect):
-    """Return a location in words; effect: its entry of the catalogue, None."""
-    of_supports = effect is not None and effect.acts_on == "contact" and location == "all"
-    return "all supports" if of_supports else place_in_words(location)
 
 
 def _misfit(verdict):
@@ -243,18 +212,21 @@ def _misfit(verdict):
 
 def _regions(verdict):
     """Return the Table of the bands that differ most."""
-    rows = [
-        {
+    rows = []
+    for region in verdict.regions[:MOST_REGIONS]:
+        # To three digits and each once: a symmetric tube has some modes twice.
+        modes = list(dict.fromkeys(map(digits, region.nearest_modes_Hz or ())))
+        more = " ..." if len(modes) > MOST_MODES else ""
+        row = {
             "band (Hz)": " to ".join(digits(edge) for edge in region.band_Hz),
             "channel": region.channel,
             f"load ({verdict.load_unit} RMS)": digits(region.load_rms_N),
             "gap (mm)": digits(region.gap_m * 1e3) if region.gap_m is not None else "-",
             "measured / simulated (dB)": _signed(region.discrepancy_dB),
             "z": _signed(region.z),
-            "nearest modes (Hz)": _modes(region.nearest_modes_Hz or ()),
+            "nearest modes (Hz)": ", ".join(modes[:MOST_MODES]) + more,
         }
-        for region in verdict.regions[:MOST_REGIONS]
-    ]
+        rows.append(row)
     known = rows and rows[0]["nearest modes (Hz)"]
     return table_of(rows, () if known else ("nearest modes (Hz)",))
 
@@ -262,15 +234,6 @@ def _regions(verdict):
 def _signed(value):
     """Return a number with its sign, - if there is none."""
     return "-" if value is None else f"{value:+.1f}"
-
-
-def _modes(frequencies):
-    """Return the modes of the model in or nearest to a band, to three digits, without duplicates.
-
-    A symmetric tube has some modes twice.
-    """
-    shown = list(dict.fromkeys(digits(frequency) for frequency in frequencies))
-    return ", ".join(shown[:MOST_MODES]) + (" ..." if len(shown) > MOST_MODES else "")
 
 
 def _flat(values, prefix=""):

@@ -6,12 +6,11 @@ k (N/m) and c (N s/m) are per support. A value that is not resolved is NaN and h
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from vibroimpact.study import method_agreement
-from vibroimpact.study.equivalent_table import equivalent_rows
 from vibroimpact.study.reasons import NOT_MOVED
 
 COMPARED = {"k": method_agreement.COMPARED, "c": method_agreement.COMPARED_DAMPING}
@@ -77,37 +76,20 @@ class Answer:
         return self.gap_m, self.group, self.direction
 
 
-def with_places(rows: Iterable[dict], direction: str) -> list[dict]:
-    """Return table rows with a group and a direction, both texts.
-
-    direction: of rows without; tables of one group may have neither column, or leave it empty.
-    """
-    default = {"group": ALL_SUPPORTS, "direction": direction}
-    return [
-        row | {key: str(row.get(key, "")) or value for key, value in default.items()}
-        for row in rows
-    ]
-
-
-def answers(
-    summary: Sequence[dict], equivalent: Sequence[dict] | None, direction: str
-) -> list[Answer]:
+def answers(summary: Sequence[dict], equivalent: Sequence[dict]) -> list[Answer]:
     """Return the Answers, ordered by gap (largest first), group, direction and load.
 
     Directions that the force does not move are left out: see unmoved.
 
-    summary: rows of consistency_summary.csv.
-    equivalent: rows of equivalent.csv; None if there is no such table, which is then made of the
-    summary.
-    direction: that of rows without, such as y.
+    summary: rows of consistency_summary.csv. equivalent: rows of equivalent.csv.
     """
-    placed = with_places(summary, direction)
-    rows = equivalent_rows(placed) if equivalent is None else with_places(equivalent, direction)
     methods: dict[tuple, dict[str, dict]] = {}
-    for row in placed:
+    for row in summary:
         methods.setdefault(_place(row), {})[row["method"]] = row
     found = [
-        _answer(row, methods.get(_place(row), {})) for row in rows if row["reason_k"] != NOT_MOVED
+        _answer(row, methods.get(_place(row), {}))
+        for row in equivalent
+        if row["reason_k"] != NOT_MOVED
     ]
     return sorted(found, key=lambda row: (-row.gap_m, row.group, row.direction, row.load_rms_N))
 
@@ -119,16 +101,16 @@ def places_of(answers: Sequence[Answer]) -> tuple[list[float], list[tuple[str, s
 
 
 def _place(row: dict) -> tuple[float, float, str, str]:
-    return float(row["gap_m"]), float(row["load_rms_N"]), row["group"], row["direction"]
+    return row["gap_m"], row["load_rms_N"], row["group"], row["direction"]
 
 
-def unmoved(equivalent: Sequence[dict] | None) -> list[tuple[str, str]]:
+def unmoved(equivalent: Sequence[dict]) -> list[tuple[str, str]]:
     """Return (group, direction) of the supports that the force does not move, each once.
 
-    equivalent: rows of equivalent.csv; None if there is no such table.
+    equivalent: rows of equivalent.csv.
     """
-    still = [row for row in equivalent or () if row["reason_k"] == NOT_MOVED]
-    return list(dict.fromkeys((str(row["group"]), str(row["direction"])) for row in still))
+    still = [row for row in equivalent if row["reason_k"] == NOT_MOVED]
+    return list(dict.fromkeys((row["group"], row["direction"]) for row in still))
 
 
 def _answer(row: dict[str, Any], methods: dict[str, dict]) -> Answer:
@@ -136,27 +118,17 @@ def _answer(row: dict[str, Any], methods: dict[str, dict]) -> Answer:
 
     def value(quantity):
         medians = {
-            name: number_or_nan(methods[name][f"{quantity}_median"])
+            name: methods[name][f"{quantity}_median"]
             for name in COMPARED[quantity]
             if name in methods
         }
         return Value(
-            number_or_nan(row[f"{quantity}_{UNITS[quantity]}"]),
-            number_or_nan(row[f"{quantity}_low"]),
-            number_or_nan(row[f"{quantity}_high"]),
-            str(row[f"agreement_{quantity}"]),
-            _text(row[f"reason_{quantity}"]),
+            row[f"{quantity}_{UNITS[quantity]}"],
+            row[f"{quantity}_low"],
+            row[f"{quantity}_high"],
+            row[f"agreement_{quantity}"],
+            row[f"reason_{quantity}"],
             {name: median for name, median in medians.items() if math.isfinite(median)},
         )
 
-    bound, touching = (number_or_nan(row.get(name)) for name in ("k_bound", "contact_fraction"))
-    return Answer(*_place(row), value("k"), value("c"), bound, touching)
-
-
-def number_or_nan(value: Any) -> float:
-    """Return a cell of a table as a number, NaN if it is a text."""
-    return float(value) if isinstance(value, (int, float)) else math.nan
-
-
-def _text(value: Any) -> str:
-    return value if isinstance(value, str) else ""
+    return Answer(*_place(row), value("k"), value("c"), row["k_bound"], row["contact_fraction"])

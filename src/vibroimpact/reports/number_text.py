@@ -11,3 +11,13 @@ def digits(value: float | None) -> str:
 def percent(fraction: float | None) -> str:
     """Return a share in whole per cent, - if there is none."""
     return "-" if fraction is None or fraction != fraction else f"{100 * fraction:.0f} %"
+
+
+def span(low: float, high: float) -> str:
+    """Return an interval as text."""
+    return f"{digits(low)} to {digits(high)}"
+
+
+def range_text(low: float, high: float) -> str:
+    """Return the range of some values as text, one number if it has no width."""
+    return digits(low) if digits(low) == digits(high) else span(low, high)

@@ -12,17 +12,8 @@ import vibroimpact
 from vibroimpact.study.wear.life import WearRow
 
 from .equivalent_answer import ALL_SUPPORTS, Answer
-from .evenly_spread import spread_evenly
 from .number_text import digits
 from .study_statistics import StudyStatistics
-from .study_tables import (
-    answer_table,
-    energy_table,
-    place_table,
-    reason_table,
-    stress_table,
-    timing_table,
-)
 from .study_words import (
     contact_sentences,
     energy_sentences,
@@ -32,9 +23,7 @@ from .study_words import (
     run_sentence,
 )
 from .table import Table
-from .wear_life import wear_sentences, wear_table
-
-MOST_LOADS = 8  # of a table of statistics, per gap
+from .wear_life import wear_sentences
 
 
 @dataclass(frozen=True)
@@ -42,34 +31,16 @@ class Provenance:
     """The origin of the numbers.
 
     configuration: the configuration as it ran, as YAML.
-    version: of the library.
-    stages: {stage: attributes of a file that it wrote}.
+    version: of the library. versions: those that the first stage was run with.
+    stages: when each stage wrote its results, and the digests of its keys and source.
     timing: rows of study.timing; empty if the jobs left no benchmark files.
     """
 
     configuration: str
     version: str
-    stages: dict[str, dict[str, str]]
+    versions: str
+    stages: Table
     timing: Sequence[dict] = ()
-
-    def stage_table(self) -> Table:
-        """Return when each stage wrote its results, and the digests of its keys and source."""
-        rows = [
-            (
-                stage,
-                values.get("history", "-").split(" written")[0].replace("T", " "),
-                values.get("config_digest", "-"),
-                values.get("source_digest", "-"),
-            )
-            for stage, values in self.stages.items()
-        ]
-        columns = ("results of", "written (UTC)", "digest of configuration", "digest of source")
-        return Table(columns, rows)
-
-    @property
-    def versions(self) -> str:
-        """The versions that the first stage was run with."""
-        return next((row["versions"] for row in self.stages.values() if "versions" in row), "")
 
 
 def provenance(
@@ -83,51 +54,54 @@ def provenance(
     stages: {stage: global attributes of one of its files}.
     """
     text = yaml.safe_dump(dict(configuration), sort_keys=False, allow_unicode=True, width=96)
-    kept = ("history", "config_digest", "source_digest", "versions")
-    return Provenance(
-        text,
-        vibroimpact.__version__,
-        {
-            stage: {key: str(values[key]) for key in kept if key in values}
-            for stage, values in stages.items()
-        },
-        timing,
-    )
+    columns = ("results of", "written (UTC)", "digest of configuration", "digest of source")
+    rows = [
+        (
+            stage,
+            str(values.get("history", "-")).split(" written")[0].replace("T", " "),
+            str(values.get("config_digest", "-")),
+            str(values.get("source_digest", "-")),
+        )
+        for stage, values in stages.items()
+    ]
+    versions = next((str(row["versions"]) for row in stages.values() if "versions" in row), "")
+    return Provenance(text, vibroimpact.__version__, versions, Table(columns, rows), timing)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class StudyContent:
-    """The content of the page of a study.
+    """The content of the page of a study, or of a measured tube in its place.
 
-    config: its configuration.
+    config: of the study or of the model. name: of the study or the campaign. kind: in words.
+    run: sentences on what was run. found: the answer, contact, wear and stress in sentences.
     answers: empty for a study without identification.
     limits: {residual: largest accepted value}.
-    unmoved: (group of supports, direction) that the force does not move.
+    unit: of the loads as they are shown. load_words: of their control and of their axis.
+    load_factor: shown loads per SI unit. scatter: what the intervals are over.
     warnings: sentences on causes that make numbers wrong or doubtful.
     worn: WearRows of a study with a wear life.
     """
 
     config: Any
+    name: str
+    kind: str = "study"
+    run: str
+    found: Sequence[str]
     answers: Sequence[Answer]
     statistics: StudyStatistics
     limits: Mapping[str, float]
     provenance: Provenance
-    unmoved: Sequence[tuple[str, str]] = ()
+    unit: str
+    load_words: tuple[str, str] = ("Load", "Load")
+    load_factor: float = 1.0
+    scatter: str = "seeds"
     warnings: Sequence[str] = ()
     worn: Sequence[WearRow] = ()
 
-    kind = "study"
-    scatter = "seeds"
-
     @property
-    def name(self) -> str:
-        """The name of the study."""
-        return str(self.config.study)
-
-    @property
-    def unit(self) -> str:
-        """The unit of the loads."""
-        return load_unit(self.config)
+    def load_label(self) -> str:
+        """The label of an axis of loads."""
+        return f"{self.load_words[1]} ({self.unit} RMS)"
 
     @property
     def several(self) -> bool:
@@ -135,74 +109,42 @@ class StudyContent:
         places = {(row.group, row.direction) for row in self.answers}
         return len(places) > 1 or any(group != ALL_SUPPORTS for group, _ in places)
 
-    def run(self) -> str:
-        """Return the sentences on the run."""
-        return run_sentence(self.config, self.statistics)
-
-    def headline(self) -> list[str]:
-        """Return the answer in sentences."""
-        sentences = headline(self.config, self.answers)
-        if self.unmoved:
-            places = ", ".join(f"{group} in {direction}" for group, direction in self.unmoved)
-            sentences.append(
-                f"No answer along directions in which the force moves no support: {places}."
-            )
-        return [*energy_sentences(self.config, self.statistics), *sentences]
-
-    def contact(self) -> list[str]:
-        """Return contact, wear and stress in sentences."""
-        return [
-            *contact_sentences(self.config, self.statistics),
-            *wear_sentences(self.worn, self.config, self.unit),
-        ]
-
     def at_gap(self, gap_m: float) -> str:
         """Return " at a gap of ... mm", empty if the gap of a case means nothing."""
         return "" if has_own_gaps(self.config) else f" at a gap of {digits(1e3 * gap_m)} mm"
 
-    def loads_in_tables(self) -> list[float]:
-        """Return the loads that tables of statistics list."""
-        return spread_evenly(self.statistics.loads, MOST_LOADS)
 
-    def answer_tables(self) -> list[tuple[float, Table]]:
-        """Return (gap in m, table of the recommended values) of each gap."""
-        rows: dict[float, list[Answer]] = {}
-        for row in self.answers:
-            rows.setdefault(row.gap_m, []).append(row)
-        return [(gap, answer_table(own, self.several, self.unit)) for gap, own in rows.items()]
+def study_content(
+    config: Any,
+    answers: Sequence[Answer],
+    statistics: StudyStatistics,
+    provenance: Provenance,
+    unmoved: Sequence[tuple[str, str]] = (),
+    worn: Sequence[WearRow] = (),
+    **more: Any,
+) -> StudyContent:
+    """Return the StudyContent of a study.
 
-    def reasons(self) -> Table:
-        """Return why values are not resolved, or differ."""
-        return reason_table(self.answers, self.statistics, self.several, self.unit)
-
-    def place_tables(self, kind: str) -> list[tuple[float, Table]]:
-        """Return (gap in m, table by load and support or local element) of each gap.
-
-        kind: support, with contact and wear; element, with power and work.
-        """
-        places = {"support": self.statistics.supports, "element": self.statistics.elements}
-        loads = self.loads_in_tables()
-        return [
-            (gap, place_table(self.statistics, kind, gap, loads, self.unit))
-            for gap in (self.statistics.gaps if places[kind] else [])
-        ]
-
-    def wear_tables(self) -> list[tuple[float, Table]]:
-        """Return (gap in m, wear life by load, support and land) of each gap."""
-        loads = self.loads_in_tables() if self.worn else []
-        return [
-            (gap, wear_table(self.worn, gap, loads, self.unit))
-            for gap in dict.fromkeys(row.gap_m for row in self.worn)
-        ]
-
-    def stress(self) -> Table:
-        """Return the stress by gap and load."""
-        return stress_table(self.statistics, self.loads_in_tables(), self.unit)
-
-    def energy(self) -> Table:
-        """Return the worst energy residuals."""
-        return energy_table(self.statistics, self.limits, self.unit)
-
-    def timing(self) -> Table:
-        """Return the time of the jobs by rule."""
-        return timing_table(self.provenance.timing)
+    unmoved: (group of supports, direction) that the force does not move. more: limits, warnings.
+    """
+    unit = load_unit(config)
+    places = ", ".join(f"{group} in {direction}" for group, direction in unmoved)
+    still = f"No answer along directions in which the force moves no support: {places}."
+    return StudyContent(
+        config=config,
+        name=str(config.study),
+        run=run_sentence(config, statistics),
+        found=[
+            *energy_sentences(config, statistics),
+            *headline(config, answers, unit),
+            *([still] if unmoved else []),
+            *contact_sentences(config, statistics),
+            *wear_sentences(worn, config, unit),
+        ],
+        answers=answers,
+        statistics=statistics,
+        provenance=provenance,
+        unit=unit,
+        worn=worn,
+        **more,
+    )

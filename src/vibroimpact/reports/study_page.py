@@ -6,18 +6,28 @@ balance, every figure, and the configuration as it ran.
 
 from __future__ import annotations
 
+import base64
+import io
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from PIL import Image
+
+from vibroimpact.io.records import read_text
+
+from . import study_tables
 from .captions import CATEGORIES, Caption
 from .number_text import digits
 from .page import rendered
 from .study_content import StudyContent
 from .study_words import answers_by_place
+from .wear_life import wear_table
 
 SCRIPT = Path(__file__).with_suffix(".js")
+LARGE_BYTES = 150_000  # pictures above it get a palette, which takes a third of their size
+COLOURS = 256
 
 
 class Picture(NamedTuple):
@@ -31,6 +41,38 @@ class Picture(NamedTuple):
     caption: Caption
     details: str
     data: str
+
+
+def pictures(paths: Iterable[str | Path], captions: Mapping[str, Caption]) -> list[Picture]:
+    """Return the Pictures of PNG files, each with its .txt file next to it, in their order.
+
+    captions: {stem of the file: Caption}.
+
+    Raises KeyError for a figure without a caption.
+    """
+    return [
+        Picture(
+            captions[path.stem],
+            read_text(path.with_suffix(".txt")).strip(),
+            base64.b64encode(few_colours(path)).decode(),
+        )
+        for path in map(Path, paths)
+    ]
+
+
+def few_colours(path: Path) -> bytes:
+    """Return the bytes of a PNG file; those of a large one as a picture with COLOURS colours."""
+    data = path.read_bytes()
+    if len(data) <= LARGE_BYTES:
+        return data
+    target = io.BytesIO()
+    with Image.open(path) as picture:
+        # Median cut keeps the colour maps smooth.
+        reduced = picture.convert("RGB").quantize(
+            COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE
+        )
+    reduced.save(target, "PNG")
+    return target.getvalue()
 
 
 class PagePlots(NamedTuple):
@@ -52,49 +94,33 @@ def study_page(content: StudyContent, plots: PagePlots, pictures: Sequence[Pictu
 
     pictures: in their order within each category.
     """
-    chosen = _useful_controls(plots)
-    return rendered(
-        "study_page.html",
-        content=content,
-        digits=digits,
-        sections=plots.sections,
-        controls=chosen,
-        categories=_by_category(pictures),
-        library=plots.library,
-        data=_as_json(
-            {
-                "plots": [plot.drawn() for section in plots.sections.values() for plot in section],
-                "controls": [
-                    {"name": control.name, "numbers": control.numbers, "values": control.values}
-                    for control in plots.controls
-                ],
-                "here": answers_by_place(content),
-            }
-        ),
-        script=SCRIPT.read_text(encoding="utf-8"),
-    )
-
-
-def _useful_controls(plots: PagePlots) -> list[Any]:
-    """Return the controls with more than one position that some plot uses."""
-    used = {
-        name for section in plots.sections.values() for plot in section for name in plot.controls
-    }
-    return [
-        control for control in plots.controls if len(control.values) > 1 and control.name in used
-    ]
-
-
-def _by_category(pictures: Iterable[Picture]) -> list[tuple[str, list[Picture]]]:
-    """Return (category, pictures) in the order of CATEGORIES, those without pictures left out."""
+    shown = [plot for section in plots.sections.values() for plot in section]
+    used = {name for plot in shown for name in plot.controls}
     groups = {
         category: [picture for picture in pictures if picture.caption.category == category]
         for category in CATEGORIES
     }
-    return [(category, group) for category, group in groups.items() if group]
-
-
-def _as_json(values: Any) -> str:
-    """Return values as JSON that can stand inside a script element."""
-    text = json.dumps(values, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
-    return text.replace("<", "\\u003c")
+    data = {
+        "plots": [plot.drawn(plots.controls) for plot in shown],
+        "controls": [
+            {"name": control.name, "numbers": control.numbers, "values": control.values}
+            for control in plots.controls
+        ],
+        "here": answers_by_place(content),
+    }
+    return rendered(
+        "study_page.html",
+        content=content,
+        digits=digits,
+        tables=study_tables,
+        wear_table=wear_table,
+        sections=plots.sections,
+        controls=[each for each in plots.controls if len(each.values) > 1 and each.name in used],
+        categories=[(category, group) for category, group in groups.items() if group],
+        library=plots.library,
+        # < is escaped, so that no text ends the script element
+        data=json.dumps(data, separators=(",", ":"), ensure_ascii=False, allow_nan=False).replace(
+            "<", "\\u003c"
+        ),
+        script=SCRIPT.read_text(encoding="utf-8"),
+    )

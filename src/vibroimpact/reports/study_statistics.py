@@ -19,6 +19,7 @@ from vibroimpact.study.statistics_table import statistics_rows
 SUPPORT_QUANTITIES = (
     "contact_fraction",
     "impact_rate",
+    "impact_velocity_rms",
     "rms_force",
     "peak_force",
     "wear_work_rate",
@@ -26,9 +27,15 @@ SUPPORT_QUANTITIES = (
 )
 ELEMENT_QUANTITIES = ("element_power", "slip_power", "slip_work")
 STRESSES = ("stress_rms", "stress_peak")
-RESIDUALS = (*ENERGY_RESIDUALS, "fixed_point_residual")
+RESIDUALS = {
+    # variable of a record -> what closes the energy balance
+    "potential_energy_residual": "with the contact's potential energy",
+    "energy_residual": "with the work of the contact forces",
+    "fixed_point_residual": "contact iteration (bound)",
+}
 READ = (*SUPPORT_QUANTITIES, *ELEMENT_QUANTITIES, *STRESSES, "stress_flag", *RESIDUALS)
-SEVERAL = "all"  # the place of a largest value over supports, sections or the whole case
+# Places: the largest value over supports or sections of a case; the values of each of them.
+SEVERAL, EACH = "all", "each"
 
 
 class Spread(NamedTuple):
@@ -39,7 +46,13 @@ class Spread(NamedTuple):
     high: float
 
 
-NOTHING = Spread(math.nan, math.nan, math.nan)
+class CaseValue(NamedTuple):
+    """A value of a case, the largest over its supports or sections, with the place of the case."""
+
+    value: float
+    gap_m: float
+    load_rms_N: float
+    seed: int
 
 
 class StudyStatistics:
@@ -61,61 +74,62 @@ class StudyStatistics:
         self.supports = _places(rows, SUPPORT_QUANTITIES)
         self.elements = _places(rows, ELEMENT_QUANTITIES)
         self.sections = _places(rows, STRESSES)
-        self._values: dict[tuple, list[float]] = {}
-        self._largest: dict[tuple, dict[int, float]] = {}
+        # {(quantity, gap, load): {seed: {name of a support or section: value}}}
+        self._values: dict[tuple, dict[int, dict[str, float]]] = {}
         for row in rows:
-            key = row["quantity"], row["gap_m"], row["load_rms_N"]
-            self._values.setdefault((*key, row["of"]), []).append(row["value"])
-            by_seed = self._largest.setdefault(key, {})
-            by_seed[row["seed"]] = max(by_seed.get(row["seed"], -math.inf), row["value"])
+            if not math.isnan(row["value"]):
+                key = row["quantity"], row["gap_m"], row["load_rms_N"]
+                by_seed = self._values.setdefault(key, {})
+                by_seed.setdefault(row["seed"], {})[row["of"]] = row["value"]
 
-    def spread(self, quantity: str, gap_m: float, load_rms_N: float, place: str = "") -> Spread:
-        """Return the Spread of a quantity over seeds.
+    def values(self, quantity: str, gap_m: float, load_rms_N: float, place: str) -> list[float]:
+        """Return the values of a quantity over seeds.
 
         place: name of a support or section, empty for a quantity of the whole case, SEVERAL for the
-        largest over all of them.
+        largest over all of them, EACH for those of all of them.
         """
-        values = (
-            [*self._largest.get((quantity, gap_m, load_rms_N), {}).values()]
-            if place == SEVERAL
-            else self._values.get((quantity, gap_m, load_rms_N, place), [])
-        )
+        cases = self._values.get((quantity, gap_m, load_rms_N), {}).values()
+        if place == SEVERAL:
+            return [max(case.values()) for case in cases]
+        return [value for case in cases for of, value in case.items() if place in (of, EACH)]
+
+    def spread(self, quantity: str, gap_m: float, load_rms_N: float, place: str) -> Spread:
+        """Return the Spread of values, see there, over seeds."""
+        values = self.values(quantity, gap_m, load_rms_N, place)
         finite = [value for value in values if math.isfinite(value)]
         if not finite:
-            return NOTHING
+            return Spread(math.nan, math.nan, math.nan)
         return Spread(float(np.median(finite)), min(finite), max(finite))
 
-    def largest(self, quantity: str) -> tuple[float, float, float]:
-        """Return (value, gap in m, load) of the largest value of a quantity; NaN for none."""
+    def of_cases(self, quantity: str) -> list[CaseValue]:
+        """Return the CaseValues of a quantity, those of the largest value first."""
         found = [
-            (max(by_seed.values()), gap, load)
-            for (name, gap, load), by_seed in self._largest.items()
+            CaseValue(max(values.values()), gap, load, seed)
+            for (name, gap, load), by_seed in self._values.items()
+            for seed, values in by_seed.items()
             if name == quantity
         ]
-        return max(found, default=(math.nan, math.nan, math.nan))
+        return sorted(found, reverse=True)
+
+    def largest(self, quantity: str) -> CaseValue:
+        """Return the largest value of a quantity with its case; NaN for none."""
+        return next(iter(self.of_cases(quantity)), CaseValue(math.nan, math.nan, math.nan, 0))
 
     def open_balances(self) -> list[tuple[float, float, float]]:
         """Return (worst residual, gap in m, load), worst first, of each gap and load with a seed
         whose energy balance is open beyond ENERGY_LIMIT.
         """
+        found = [case for name in ENERGY_RESIDUALS for case in self.of_cases(name)]
         worst: dict[tuple[float, float], float] = {}
-        for (name, gap, load), by_seed in self._largest.items():
-            if name in ENERGY_RESIDUALS:
-                values = [value for value in by_seed.values() if value > ENERGY_LIMIT]
-                if values:
-                    worst[gap, load] = max(worst.get((gap, load), 0.0), *values)
-        return sorted(((value, *place) for place, value in worst.items()), reverse=True)
+        for value, gap, load, _ in sorted(found, reverse=True):
+            if value > ENERGY_LIMIT:
+                worst.setdefault((gap, load), value)
+        return [(value, *place) for place, value in worst.items()]
 
     def flagged(self) -> list[tuple[float, float]]:
         """Return (gap in m, load) of the cases with a seed above the stress limit."""
-        return sorted(
-            {
-                (gap, load)
-                for (name, gap, load), by_seed in self._largest.items()
-                if name == "stress_flag" and max(by_seed.values()) > 0
-            },
-            key=lambda place: (-place[0], place[1]),
-        )
+        places = {(-gap, load) for value, gap, load, _ in self.of_cases("stress_flag") if value > 0}
+        return [(-gap, load) for gap, load in sorted(places)]
 
 
 def study_statistics(paths: Sequence[str | Path], read: Callable) -> StudyStatistics:

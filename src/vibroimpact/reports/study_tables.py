@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping, Sequence
-from itertools import groupby
+from collections.abc import Sequence
+from itertools import groupby, product
 
 from .equivalent_answer import Answer, Value
-from .number_text import digits
+from .evenly_spread import spread_evenly
+from .number_text import digits, range_text, span
+from .study_content import StudyContent
 from .study_statistics import RESIDUALS, SEVERAL, StudyStatistics
 from .study_words import stiffness_unit
 from .table import Table, table_of
@@ -21,14 +23,10 @@ AGREEMENTS = {
 }
 PARTIAL = {"k": "two of three", "c": "one of two"}
 NUMBERS = re.compile(r"[-+]?\d[-+.e\d]*( (?=[kMG]?N))?[kMG]?")  # with the prefix of a unit
-RESIDUAL_WORDS = {
-    "energy_residual": "with the work of the contact forces",
-    "potential_energy_residual": "with the contact's potential energy",
-    "fixed_point_residual": "contact iteration, bound",
-}
+TOUCHING = "time in contact (%)"
 # Quantity -> (heading with its unit, units per SI unit).
 SUPPORT_COLUMNS = {
-    "contact_fraction": ("time in contact (%)", 100.0),
+    "contact_fraction": (TOUCHING, 100.0),
     "impact_rate": ("impacts (1/s)", 1.0),
     "rms_force": ("RMS force (N)", 1.0),
     "peak_force": ("peak force (N)", 1.0),
@@ -42,25 +40,28 @@ ELEMENT_COLUMNS = {
 }
 PLACE = ("supports", "direction")  # left out of the tables of a study with one place
 PLACES = {"support": SUPPORT_COLUMNS, "element": ELEMENT_COLUMNS}
+MOST_LOADS = 8  # of a table of statistics, per gap
 
 
-def answer_table(answers: Sequence[Answer], several: bool, unit: str) -> Table:
-    """Return recommended k and c with intervals over seeds and agreement, a row per answer.
+def shown_loads(content: StudyContent) -> list[float]:
+    """Return the loads that tables of statistics list."""
+    return spread_evenly(content.statistics.loads, MOST_LOADS)
 
-    several: whether to name group and direction.
-    unit: of the load.
-    """
-    stiffness, factor = stiffness_unit([row.k.value for row in answers])
+
+def answer_table(content: StudyContent, gap_m: float) -> Table:
+    """Return recommended k and c at a gap, with intervals over seeds and agreement."""
+    stiffness, factor = stiffness_unit([row.k.value for row in content.answers])
     rows = [
         {
             **_place_cells(row),
-            f"load ({unit} RMS)": digits(row.load_rms_N),
+            f"load ({content.unit} RMS)": digits(row.load_rms_N),
             **_value_cells(row, "k", stiffness, factor),
             **_value_cells(row, "c", "N s/m", 1.0),
         }
-        for row in answers
+        for row in content.answers
+        if row.gap_m == gap_m
     ]
-    return table_of(rows, () if several else PLACE)
+    return table_of(rows, () if content.several else PLACE)
 
 
 def _place_cells(row: Answer) -> dict[str, str]:
@@ -93,44 +94,38 @@ def _value_cells(row: Answer, quantity: str, unit: str, factor: float) -> dict[s
     }
 
 
-def span(low: float, high: float) -> str:
-    """Return an interval as text."""
-    return f"{digits(low)} to {digits(high)}"
-
-
-def reason_table(
-    answers: Sequence[Answer], statistics: StudyStatistics, several: bool, unit: str
-) -> Table:
+def reason_table(content: StudyContent) -> Table:
     """Return why values are not resolved or differ, a row per run of loads with the same reason.
 
     k and c share a row if they share the reason. The share of time in contact shows whether there
-    was a support to see.
+    was a support to see; it is left out of what was measured.
     """
     rows = []
-    for _, group in groupby(answers, key=lambda row: row.place):
+    for _, group in groupby(content.answers, key=lambda row: row.place):
         curve = list(group)
         for quantity in ("k", "c"):
             for kind, run in groupby(curve, key=lambda row: _kind(row, quantity)):
                 if kind is not None:
-                    rows.append(_reason_row(statistics, quantity, kind, list(run), unit))
-    return table_of(rows, () if several else PLACE)
+                    rows.append(_reason_row(content, quantity, kind, list(run)))
+    left_out = () if content.statistics.supports else (TOUCHING,)
+    return table_of(rows, left_out if content.several else (*PLACE, *left_out))
 
 
 def _reason_row(
-    statistics: StudyStatistics,
-    quantity: str,
-    kind: tuple[str, str, str],
-    alike: Sequence[Answer],
-    unit: str,
+    content: StudyContent, quantity: str, kind: tuple[str, str, str], alike: Sequence[Answer]
 ) -> dict[str, str]:
-    """Return the row of a run of loads with the same reason."""
+    """Return the row of a run of loads with the same reason, that of its first load if the numbers
+    change.
+    """
     first, last = digits(alike[0].load_rms_N), digits(alike[-1].load_rms_N)
+    reasons = [getattr(row, quantity).reason for row in alike]
+    why = f"{reasons[0]} (at {first} {content.unit} RMS, likewise at the others)"
     return {
         **_place_cells(alike[0]),
-        f"loads ({unit} RMS)": first if len(alike) == 1 else f"{first} to {last}",
+        f"loads ({content.unit} RMS)": first if len(alike) == 1 else f"{first} to {last}",
         "value": f"{kind[0]}: {kind[1]}",
-        "why": _reason([getattr(row, quantity).reason for row in alike], first, unit),
-        "time in contact (%)": _touching(statistics, alike),
+        "why": reasons[0] if len(set(reasons)) == 1 else why,
+        TOUCHING: _touching(content.statistics, alike),
     }
 
 
@@ -147,13 +142,6 @@ def _kind(row: Answer, quantity: str) -> tuple[str, str, str] | None:
     return name, agreement_in_words(row, quantity), NUMBERS.sub("#", value.reason)
 
 
-def _reason(reasons: Sequence[str], load: str, unit: str) -> str:
-    """Return the reason of a run of loads; that of its first load if the numbers change."""
-    if len(set(reasons)) == 1:
-        return reasons[0]
-    return f"{reasons[0]} (at {load} {unit} RMS, likewise at the others)"
-
-
 def _touching(statistics: StudyStatistics, alike: Sequence[Answer]) -> str:
     """Return the range of the time in contact: of the answers, or of all supports without it."""
     values = []
@@ -164,83 +152,79 @@ def _touching(statistics: StudyStatistics, alike: Sequence[Answer]) -> str:
             row.touching if known else statistics.spread("contact_fraction", *case).median
         )
     finite = [100.0 * value for value in values if math.isfinite(value)]
-    if not finite:
-        return "-"
-    low, high = digits(min(finite)), digits(max(finite))
-    return low if low == high else f"{low} to {high}"
+    return range_text(min(finite), max(finite)) if finite else "-"
 
 
-def place_table(
-    statistics: StudyStatistics, kind: str, gap_m: float, loads: Sequence[float], unit: str
-) -> Table:
+def place_table(content: StudyContent, kind: str, gap_m: float) -> Table:
     """Return contact and wear, or power and work, of one gap, a row per load and place.
 
-    kind: of the places, support or element. unit: of the load. The values are medians over seeds
-    of the quantities that were recorded.
+    kind: of the places, support or element. The values are medians over seeds of the quantities
+    that were recorded.
     """
+    statistics = content.statistics
     present = {name: of for name, of in PLACES[kind].items() if name in statistics.quantities}
     return table_of(
-        {f"load ({unit} RMS)": digits(load), kind: place}
+        {f"load ({content.unit} RMS)": digits(load), kind: place}
         | {
             title: digits(factor * statistics.spread(quantity, gap_m, load, place).median)
             for quantity, (title, factor) in present.items()
         }
-        for load in loads
+        for load in shown_loads(content)
         for place in (statistics.supports if kind == "support" else statistics.elements)
     )
 
 
-def stress_table(statistics: StudyStatistics, loads: Sequence[float], unit: str) -> Table:
+def stress_table(content: StudyContent) -> Table:
     """Return the stress of the most stressed section, a row per gap and load, medians over seeds.
 
     The peak has its range over seeds.
     """
+    statistics, rows = content.statistics, []
     flagged = set(statistics.flagged())
-    rows = []
-    for gap in statistics.gaps:
-        for load in loads:
-            rms, peak = (
-                [1e-6 * value for value in statistics.spread(quantity, gap, load, SEVERAL)]
-                for quantity in ("stress_rms", "stress_peak")
-            )
-            if not math.isfinite(peak[0]):
-                continue
-            worst = max(
-                statistics.sections,
-                key=lambda name: statistics.spread("stress_peak", gap, load, name).median,
-            )
-            rows.append(
-                {
-                    "gap (mm)": digits(1e3 * gap),
-                    f"load ({unit} RMS)": digits(load),
-                    "RMS stress (MPa)": digits(rms[0]),
-                    "peak stress (MPa)": digits(peak[0]),
-                    "range over seeds": span(*peak[1:]),
-                    "most stressed section": worst.replace("_", " "),
-                    "above the limit": "yes" if (gap, load) in flagged else "no",
-                }
-            )
+    for gap, load in product(statistics.gaps, shown_loads(content)):
+        rms, peak = (
+            [1e-6 * value for value in statistics.spread(quantity, gap, load, SEVERAL)]
+            for quantity in ("stress_rms", "stress_peak")
+        )
+        if not math.isfinite(peak[0]):
+            continue
+        medians = {
+            name: statistics.spread("stress_peak", gap, load, name).median
+            for name in statistics.sections
+        }
+        rows.append(
+            {
+                "gap (mm)": digits(1e3 * gap),
+                f"load ({content.unit} RMS)": digits(load),
+                "RMS stress (MPa)": digits(rms[0]),
+                "peak stress (MPa)": digits(peak[0]),
+                "range over seeds": span(*peak[1:]),
+                "most stressed section": max(medians, key=lambda name: medians[name]).replace(
+                    "_", " "
+                ),
+                "above the limit": "yes" if (gap, load) in flagged else "no",
+            }
+        )
     return table_of(rows)
 
 
-def energy_table(statistics: StudyStatistics, limits: Mapping[str, float], unit: str) -> Table:
+def energy_table(content: StudyContent) -> Table:
     """Return the worst energy residual of all cases and the accepted one."""
     rows = []
-    for quantity in RESIDUALS:
-        value, gap, load = statistics.largest(quantity)
-        if not math.isfinite(value):
-            continue
-        limit = limits.get(quantity)
-        rows.append(
-            {
-                "energy balance": RESIDUAL_WORDS[quantity],
-                "worst residual / input work (-)": f"{value:.2g}",
-                "accepted (-)": "-" if limit is None else f"{limit:.2g}",
-                "within": "-" if limit is None else "yes" if value <= limit else "no",
-                f"at load ({unit} RMS)": digits(load),
-                "at gap (mm)": digits(1e3 * gap),
-            }
-        )
+    for quantity, words in RESIDUALS.items():
+        value, gap, load, _ = content.statistics.largest(quantity)
+        if math.isfinite(value):
+            limit = content.limits.get(quantity)
+            rows.append(
+                {
+                    "energy balance": words,
+                    "worst residual / input work (-)": f"{value:.2g}",
+                    "accepted (-)": "-" if limit is None else f"{limit:.2g}",
+                    "within": "-" if limit is None else "yes" if value <= limit else "no",
+                    f"at load ({content.unit} RMS)": digits(load),
+                    "at gap (mm)": digits(1e3 * gap),
+                }
+            )
     return table_of(rows)
 
 

@@ -30,11 +30,6 @@ def load_unit(config: Any) -> str:
     return "m/s²" if config.excitation.kind == "base_motion" else "N"
 
 
-def load_label(config: Any) -> str:
-    """Return the label of an axis of loads."""
-    return f"Load ({load_unit(config)} RMS)"
-
-
 def stiffness_unit(values: Sequence[float]) -> tuple[str, float]:
     """Return (unit, units per N/m) that the stiffnesses of a study are shown in."""
     largest = max((value for value in values if math.isfinite(value)), default=0.0)
@@ -51,7 +46,8 @@ def run_sentence(config: Any, statistics: StudyStatistics) -> str:
     if supports and has_own_gaps(config):
         kinds.insert(0, f"gaps of their own ({_range(sorted(1e3 * gap for gap in own))} mm)")
     elif supports:
-        listed = _listed([digits(1e3 * gap) for gap in gaps])
+        *others, last = [digits(1e3 * gap) for gap in gaps]
+        listed = f"{', '.join(others)} and {last}" if others else last
         kinds.insert(0, f"{_count(gaps, 'gap')} (radial, {listed} mm)")
     return (
         f"{STRUCTURES.get(config.structure.kind, 'A structure')}{held} under"
@@ -93,28 +89,25 @@ def _range(values: Sequence[float]) -> str:
     return f"of {low}" if low == high else f"from {low} to {high}"
 
 
-def _listed(texts: Sequence[str]) -> str:
-    return texts[0] if len(texts) == 1 else f"{', '.join(texts[:-1])} and {texts[-1]}"
-
-
-def headline(config: Any, answers: Sequence[Answer], unit: str = "") -> list[str]:
+def headline(config: Any, answers: Sequence[Answer], unit: str) -> list[str]:
     """Return the answer in sentences: how often k and c are resolved, and their course with load.
 
-    config: of the study. unit: of the levels, that of its loads by default.
+    config: of the study. unit: of the loads.
     """
     if not answers:
         return []
     places = list(dict.fromkeys(row.place for row in answers))
     several = len({place[1:] for place in places}) > 1
-    unit = unit or load_unit(config)
     sentences = [_agreement(answers, quantity, several) for quantity in ("k", "c")]
     each = several or any(row.group != ALL_SUPPORTS for row in answers)
     sentences += _readings(config, answers, each)
     scale = stiffness_unit([row.k.value for row in answers])
     for place in places[:MOST_PLACES]:
         rows = [row for row in answers if row.place == place]
+        gap, group, direction = place
+        where = f", {group}, direction {direction}".lower() if group != ALL_SUPPORTS else ""
         sentences.append(
-            f"{_place_in_words(*place).capitalize()}: {_course(rows, 'k', scale, unit)};"
+            f"Gap {digits(1e3 * gap)} mm{where}: {_course(rows, 'k', scale, unit)};"
             f" {_course(rows, 'c', ('N s/m', 1.0), unit)}."
         )
     if len(places) > MOST_PLACES:
@@ -213,12 +206,6 @@ def answer_in_words(row: Answer, scale: tuple[str, float]) -> str:
     return text[:1].replace("n", "N") + text[1:] + "."  # but k stays k
 
 
-def _place_in_words(gap_m: float, group: str, direction: str) -> str:
-    """Return a gap, with group of supports and direction if the group has a name of its own."""
-    place = f", {group}, direction {direction}" if group != ALL_SUPPORTS else ""
-    return f"gap {digits(1e3 * gap_m)} mm{place}"
-
-
 def energy_sentences(config: Any, statistics: StudyStatistics) -> list[str]:
     """Return that energy balances are open so far that numbers are of no use, or nothing."""
     found = statistics.open_balances()
@@ -238,19 +225,24 @@ def energy_sentences(config: Any, statistics: StudyStatistics) -> list[str]:
 def contact_sentences(config: Any, statistics: StudyStatistics) -> list[str]:
     """Return the remarks on contact, wear and stress."""
     sentences = []
-    touching, gap, load = statistics.largest("contact_fraction")
+    touching, gap, load, _ = statistics.largest("contact_fraction")
     if math.isfinite(touching):
         sentences.append(
             f"Most contact: {digits(100.0 * touching)} % of the time, {_where(config, gap, load)}."
             if touching > 0.0
             else "No support is touched in any case."
         )
-    wear, gap, load = statistics.largest("wear_work_rate")
+    wear, gap, load, _ = statistics.largest("wear_work_rate")
     if math.isfinite(wear) and wear > 0.0:
         sentences.append(f"Largest wear work rate: {digits(wear)} W, {_where(config, gap, load)}.")
-    stress, _, _ = statistics.largest("stress_peak")
+    stress = statistics.largest("stress_peak").value
     if math.isfinite(stress):
-        sentences.append(_stress(config, statistics, stress))
+        limit = f"the limit of {digits(1e-6 * config.record.stress_limit_Pa)} MPa"
+        flagged = [_where(config, gap, load) for gap, load in statistics.flagged()]
+        more = f" and {len(flagged) - 4} more" if len(flagged) > 4 else ""
+        beyond = f". Above {limit}: {'; '.join(flagged[:4])}{more}."
+        told = beyond if flagged else f"; no case exceeds {limit}."
+        sentences.append(f"Largest stress: {digits(1e-6 * stress)} MPa{told}")
     return sentences
 
 
@@ -262,13 +254,3 @@ def has_own_gaps(config: Any) -> bool:
 def _where(config: Any, gap_m: float, load: float) -> str:
     gap = "" if has_own_gaps(config) else f" and a gap of {digits(1e3 * gap_m)} mm"
     return f"at {digits(load)} {load_unit(config)} RMS{gap}"
-
-
-def _stress(config: Any, statistics: StudyStatistics, stress: float) -> str:
-    limit = f"the limit of {digits(1e-6 * config.record.stress_limit_Pa)} MPa"
-    flagged = statistics.flagged()
-    if not flagged:
-        return f"Largest stress: {digits(1e-6 * stress)} MPa; no case exceeds {limit}."
-    named = "; ".join(_where(config, gap, load) for gap, load in flagged[:4])
-    more = f" and {len(flagged) - 4} more" if len(flagged) > 4 else ""
-    return f"Largest stress: {digits(1e-6 * stress)} MPa. Above {limit}: {named}{more}."

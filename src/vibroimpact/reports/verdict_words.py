@@ -24,12 +24,11 @@ def verdict_sentence(verdict: Verdict) -> str:
         else ""
     )
     named = "; and ".join(map(_with_parameters, verdict.effects))
-    sure = _how_sure(verdict)
-    alternatives = [
-        ids
-        for ids in verdict.ambiguity_set
-        if sorted(ids) != sorted(effect.id for effect in verdict.effects)
-    ]
+    own = _ids(verdict.effects)
+    wanted = NOTHING if verdict.verdict == "none" else effects_in_words(own)
+    known = [row.probability for row in explanations_of(verdict) if row.words == wanted]
+    sure = f" The probability of this is {chance_text(known[0])}." if known else ""
+    alternatives = [ids for ids in verdict.ambiguity_set if sorted(ids) != own]
     others = (
         f" This campaign can not distinguish it from {sets_in_words(alternatives)}."
         if named and alternatives
@@ -57,16 +56,6 @@ def verdict_sentence(verdict: Verdict) -> str:
         "not_testable": f"The campaign can not be judged. {refusals}".strip(),
     }
     return sentences[verdict.verdict] + not_run_sentence(verdict.not_run)
-
-
-def _how_sure(verdict):
-    """Return the probability of a verdict as a sentence; empty if it is not known."""
-    ids = effects_in_words(sorted(effect.id for effect in verdict.effects))
-    wanted = NOTHING if verdict.verdict == "none" else ids
-    rows = [row for row in explanations_of(verdict) if row.words == wanted]
-    if not rows:
-        return ""
-    return f" The probability of this is {chance_text(rows[0].probability)}."
 
 
 def _tried(verdict):
@@ -183,10 +172,6 @@ def judgement(verdict: Verdict, row: dict, first: bool) -> str:
         return "makes the misfit grow"
     if score <= 0.0:
         return "gains nothing on records that it was not fitted to"
-    return _gains_little(verdict, bool(shown))
-
-
-def _gains_little(verdict: Verdict, shown: bool) -> str:
     if verdict.verdict == "none":
         return "gains no more than small errors of a right model do"
     return "explains less" if shown else "leaves a difference beyond chance"

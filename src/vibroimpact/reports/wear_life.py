@@ -9,8 +9,7 @@ from typing import Any
 
 from vibroimpact.study.wear.life import WearRow, deepest, wear_rank
 
-from .number_text import digits
-from .study_tables import span
+from .number_text import digits, range_text
 from .table import Table, table_of
 
 
@@ -56,4 +55,4 @@ def _range(rows: Sequence[WearRow], name: str, factor: float) -> str:
     low, high = min(values), max(values)
     if math.isinf(high):
         return "never" if math.isinf(low) else f"at least {digits(low)}"
-    return digits(low) if low == high else span(low, high)
+    return range_text(low, high)

@@ -15,10 +15,9 @@ from vibroimpact.io.records import write_text
 from vibroimpact.reports.captions import read_caption
 from vibroimpact.reports.figures.drawing import save_plots
 from vibroimpact.reports.figures.interactive.measured_plots import measured_plots
-from vibroimpact.reports.figures.interactive.pictures import pictures
 from vibroimpact.reports.figures.study.measured import measured_figures, study_beside
 from vibroimpact.reports.measured_content import measured_content
-from vibroimpact.reports.study_page import study_page
+from vibroimpact.reports.study_page import pictures, study_page
 from vibroimpact.study.headline import flag_sentences
 
 
@@ -41,4 +40,4 @@ def make(given: Any, made: Any, params: Any) -> None:
     }
     page = study_page(content, measured_plots(content, found), pictures(files, captions))
     write_text(page, made.page)
-    print(*content.headline(), sep="\n")
+    print(*content.found, sep="\n")

@@ -10,7 +10,7 @@ from vibroimpact.io.records import read_table
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.reports.figures.drawing import save_plots
 from vibroimpact.reports.figures.study import broadband, poles, shapes, stabilisation
-from vibroimpact.reports.figures.study.cases_of_gap import cases_of_gap, shown_gap
+from vibroimpact.reports.figures.study.cases_of_gap import ReadOnDemand, cases_of_gap, shown_gap
 from vibroimpact.study.case_files import read_case
 
 
@@ -18,8 +18,8 @@ def make(given: Any, made: Any, params: Any) -> None:
     """given: model, spectra, curves, table. made: figures. params: config."""
     config, model = StageSettings(params.config), read_model(given.model)
     rows = [row for row in read_table(given.table) if row["gap_m"] == shown_gap(config)]
-    curves = cases_of_gap(given.curves, config, read_case)
-    spectra = cases_of_gap(given.spectra, config, read_case)
+    curves = {case: read_case(path) for case, path in cases_of_gap(given.curves, config).items()}
+    spectra = ReadOnDemand(cases_of_gap(given.spectra, config), read_case)
     plots = [
         poles.figure_09_poles(config, model, curves, spectra, rows),
         stabilisation.figure_09_stabilisation(config, curves, spectra, rows),

@@ -12,20 +12,17 @@ from vibroimpact.reduction.model_accuracy import mesh_warnings
 from vibroimpact.reduction.model_file import read_model
 from vibroimpact.reports.captions import read_caption
 from vibroimpact.reports.equivalent_answer import answers, unmoved
-from vibroimpact.reports.figures.interactive.pictures import pictures
-from vibroimpact.reports.figures.interactive.study_plots import (
-    StudyFiles,
-    direction_of,
-    study_plots,
-)
+from vibroimpact.reports.figures.interactive.study_plots import StudyFiles, study_plots
 from vibroimpact.reports.figures.study.checks import limits
-from vibroimpact.reports.study_content import StudyContent, provenance
-from vibroimpact.reports.study_page import study_page
+from vibroimpact.reports.study_content import provenance, study_content
+from vibroimpact.reports.study_page import pictures, study_page
 from vibroimpact.reports.study_statistics import study_statistics
 from vibroimpact.study.case_files import read_case
 from vibroimpact.study.headline import flag_sentences
 from vibroimpact.study.timing import timing_so_far
 from vibroimpact.study.wear.life import WearRow, wear_rows
+
+NAMES = ("group", "direction")  # columns of tables: a name may read as a number
 
 
 def make(given: Any, made: Any, params: Any) -> None:
@@ -33,8 +30,8 @@ def make(given: Any, made: Any, params: Any) -> None:
     page, wear. params: config, jobs: benchmark files and logs of the study.
     """
     config = StageSettings(params.config)
-    tables = {Path(path).stem: read_table(path) for path in given.tables}
-    summary = tables.get("consistency_summary", [])
+    tables = {Path(path).stem: read_table(path, NAMES) for path in given.tables}
+    summary, equivalent = (tables.get(name, []) for name in ("consistency_summary", "equivalent"))
     stages = {
         stage: read_attributes(paths[0])
         for stage, paths in (
@@ -46,15 +43,15 @@ def make(given: Any, made: Any, params: Any) -> None:
         if paths
     }
     worn = wear_rows(config, given.records, config.wear) if config.wear is not None else []
-    content = StudyContent(
+    content = study_content(
         config,
-        answers(summary, tables.get("equivalent"), direction_of(config)),
+        answers(summary, equivalent),
         study_statistics(given.records, read_case),
-        limits(config.integration),
         provenance(params.config, stages, timing_so_far(*params.jobs)),
-        unmoved(tables.get("equivalent")),
-        [*mesh_warnings(read_table(given.accuracy)), *flag_sentences(tables.get("equivalent", []))],
+        unmoved(equivalent),
         worn,
+        limits=limits(config.integration),
+        warnings=[*mesh_warnings(read_table(given.accuracy)), *flag_sentences(equivalent)],
     )
     model = read_model(given.model)
     files = StudyFiles(model, given.series, given.spectra, given.curves, summary, read_case)

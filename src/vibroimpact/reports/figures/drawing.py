@@ -72,7 +72,14 @@ def _named(panels: Iterable[str]) -> list[str]:
 
 def _draw_panel(sheet: Sheet, axes: Axes, panel: Panel) -> None:
     axes.set_title(panel.title)
-    right = _right_axes(axes, panel) if panel.right is not None else None
+    right = None
+    if panel.right is not None:  # its own vertical scale, behind the other
+        own = [item.curve for item in panel.items if isinstance(item, Series) and item.right]
+        right = axes.twinx()
+        right.set_label(" ".join([str(axes.get_label()), *own]))
+        right.grid(False)
+        axes.set_zorder(right.get_zorder() + 1)
+        axes.patch.set_visible(False)
     for item in panel.items:
         on_right = isinstance(item, Series) and item.right
         DRAW[type(item)](sheet, right if on_right else axes, panel, item)
@@ -87,20 +94,9 @@ def _draw_panel(sheet: Sheet, axes: Axes, panel: Panel) -> None:
         axes.set_axis_off()
     if panel.equal:
         axes.set_aspect("equal", adjustable="datalim")
-    if panel.legend:
-        title = panel.legend_title or None
-        sheet.legend(axes, loc=panel.legend, title=title, ncols=panel.legend_columns)
-
-
-def _right_axes(axes: Axes, panel: Panel) -> Axes:
-    """Return axes with their own vertical scale on the right, behind the others."""
-    right = axes.twinx()
-    own = [item.curve for item in panel.items if isinstance(item, Series) and item.right]
-    right.set_label(" ".join([str(axes.get_label()), *own]))
-    right.grid(False)
-    axes.set_zorder(right.get_zorder() + 1)
-    axes.patch.set_visible(False)
-    return right
+    if panel.legend and axes.get_legend_handles_labels()[1]:
+        look: Any = {"loc": panel.legend, "title": panel.legend_title or None}
+        axes.legend(**look, ncols=panel.legend_columns)
 
 
 def _finish_axis(axes: Axes, letter: str, axis: Axis, empty: bool) -> None:
@@ -146,11 +142,9 @@ def _series(sheet: Sheet, axes: Axes, panel: Panel, item: Series) -> None:
     x, y, tags = (panel.x.column, item.x), (y_axis.column, item.y), dict(item.tags)
     if not item.curve:
         axes.plot(shown(*x), shown(*y), **_style(item))
-    elif item.low is None or item.high is None or item.band:
-        low, high = item.low, item.high
-        sheet.line(axes, x, y, item.curve, low=low, high=high, tags=tags, **_style(item))
     else:
-        sheet.bars(axes, x, y, item.curve, item.low, item.high, tags, **_style(item))
+        ends, look = (item.low, item.high), _style(item)
+        sheet.line(axes, x, y, item.curve, *ends, tags, band=item.band, **look)
 
 
 def _bars(sheet: Sheet, axes: Axes, panel: Panel, item: Bars) -> None:
@@ -176,24 +170,10 @@ def _bars(sheet: Sheet, axes: Axes, panel: Panel, item: Bars) -> None:
 
 def _mark(sheet: Sheet, axes: Axes, panel: Panel, item: Mark) -> None:
     axis, upright = (panel.x, True) if item.axis == "x" else (panel.y, False)
-    place = float(shown(axis.column, item.value))
     if item.curve:
-        sheet.mark(axes, axis.column, item.value, item.curve, upright, **_style(item))
-    else:
-        (axes.axvline if upright else axes.axhline)(place, **_style(item))
-    if item.text:
-        at = (place, 0.02) if upright else (1.0, place)
-        axes.annotate(
-            item.text,
-            at,
-            xycoords=("data", "axes fraction") if upright else ("axes fraction", "data"),
-            xytext=(3, 0) if upright else (-2, 2),
-            textcoords="offset points",
-            ha="left" if upright else "right",
-            va="bottom",
-            fontsize=8,
-            color=item.colour,
-        )
+        sheet.record(axes, item.curve, **{axis.column: item.value})
+    place = float(shown(axis.column, item.value))
+    (axes.axvline if upright else axes.axhline)(place, **_style(item))
 
 
 def _signs(sheet: Sheet, axes: Axes, panel: Panel, item: Signs) -> None:

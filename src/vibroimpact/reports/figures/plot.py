@@ -24,7 +24,7 @@ class Axis:
     log: whether it is logarithmic.
     low, high: limits, None if the data set them.
     label: in the place of that of the column.
-    names: of the places 0, 1, ... of bars and cells; the first is at the top.
+    names: of the places 0, 1, ... of bars and maps; the first is at the top.
     bare: whether it has neither label nor numbers, because a neighbour shows them.
     """
 
@@ -90,17 +90,14 @@ class Series(Look):
 class Bars(Look):
     """Bars of values (bar,) at places (bar,) of the other axis, which has names or a unit.
 
-    low, high: of a range about the value. start: values at which the bars begin.
-    texts: at their ends. colours: one per bar, in the place of colour.
-    thickness: in units of the places.
+    start: values at which the bars begin. texts: at their ends.
+    colours: one per bar, in the place of colour. thickness: in units of the places.
     """
 
     curve: str
     places: ArrayLike
     values: ArrayLike
     tags: Tags = field(default_factory=dict)
-    low: ArrayLike | None = None
-    high: ArrayLike | None = None
     start: ArrayLike | None = None
     texts: Sequence[str] = ()
     colours: Sequence[str] = ()
@@ -113,13 +110,11 @@ class Mark(Look):
 
     curve: its name in the CSV; an empty one is not in the CSV.
     axis: "x" or "y".
-    text: at the end of the line.
     """
 
     curve: str
     axis: str
     value: float
-    text: str = ""
 
 
 @dataclass(frozen=True)
@@ -180,27 +175,14 @@ class Map:
     edges: ArrayLike | None = None
 
 
-@dataclass(frozen=True)
-class Cells:
-    """Kinds (row, column) of named rows and columns, on a page.
-
-    colours: of the kinds 0, 1, ... texts, hover (row, column): in a cell, and under the pointer.
-    """
-
-    kinds: Sequence[Sequence[int]]
-    colours: Sequence[str]
-    texts: Sequence[Sequence[str]]
-    hover: Sequence[Sequence[str]]
-
-
-Item = Series | Bars | Mark | Signs | Span | Text | Map | Cells
+Item = Series | Bars | Mark | Signs | Span | Text | Map
 
 
 @dataclass(frozen=True)
 class Panel:
     """Axes with their items, in the order in which they are drawn.
 
-    note: why the panel is empty, shown if it holds no series, bars, map or cells.
+    note: why the panel is empty, shown if it holds no series, bars or map.
     right: a second vertical axis.
     legend: its place in the panel as matplotlib names it, empty for none.
     equal: whether both axes have one scale.
@@ -221,7 +203,7 @@ class Panel:
 
     def is_empty(self) -> bool:
         """Whether nothing is drawn but marks, spans and texts."""
-        return not any(isinstance(item, (Series, Bars, Map, Cells)) for item in self.items)
+        return not any(isinstance(item, (Series, Bars, Map)) for item in self.items)
 
 
 @dataclass(frozen=True)

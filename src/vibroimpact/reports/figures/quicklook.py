@@ -61,10 +61,25 @@ def quicklook(campaign):
         for role, index, name, unit in panels
     }
     rows = in_rows([*drawn, "levels"], ACROSS)
+    duration = max(signal.shape[-1] for signal in measured.force) / measured.rate
+    title = (
+        f"{len(measured.records)} records of up to {duration:.3g} s at {measured.rate:g} Hz:"
+        f" {len(measured.forces)} force{'s' if len(measured.forces) > 1 else ''},"
+        f" {len(measured.channels)} responses"
+    )
+    source = str(campaign.attrs.get("source", "")) or "no source given"
+    hidden = f" Not shown: {', '.join(name for _, _, name, _ in left_out)}." if left_out else ""
+    caption = (
+        f"Campaign: {source}. PSD of each force and response in SI units, Hann windows, mean power"
+        f" in bins of 1/{BINS_PER_OCTAVE} octave, one curve per record, light for high loads;"
+        " dashed: held out. The shaded band is that of the force, or that stated by the file."
+        " Last panel: RMS of each response about its mean over that at the lowest level; a linear"
+        f" structure follows the grey line.{hidden}"
+    )
     return Plot(
         "quicklook",
-        _title(measured),
-        _caption(campaign, left_out),
+        title,
+        caption,
         {**drawn, "levels": _levels(measured)},
         rows,
         (12.0, 0.9 + 2.5 * len(rows)),
@@ -75,27 +90,6 @@ def quicklook(campaign):
 def _drive(measured):
     """Return the kind of the first force channel; that of a force if none was measured."""
     return (*measured.force_kinds, FORCE)[0]
-
-
-def _title(measured):
-    duration = max(signal.shape[-1] for signal in measured.force) / measured.rate
-    forces = f"{len(measured.forces)} force{'s' if len(measured.forces) > 1 else ''}"
-    return (
-        f"{len(measured.records)} records of up to {duration:.3g} s at {measured.rate:g} Hz:"
-        f" {forces}, {len(measured.channels)} responses"
-    )
-
-
-def _caption(campaign, left_out):
-    source = str(campaign.attrs.get("source", "")) or "no source given"
-    hidden = f" Not shown: {', '.join(name for _, _, name, _ in left_out)}." if left_out else ""
-    return (
-        f"Campaign: {source}. PSD of each force and response in SI units, Hann windows, mean power"
-        f" in bins of 1/{BINS_PER_OCTAVE} octave, one curve per record, light for high loads;"
-        " dashed: held out. The shaded band is that of the force, or that stated by the file."
-        " Last panel: RMS of each response about its mean over that at the lowest level; a linear"
-        f" structure follows the grey line.{hidden}"
-    )
 
 
 def _shown_unit(units, kind):

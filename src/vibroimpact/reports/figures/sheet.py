@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from itertools import repeat
 from pathlib import Path
 from typing import Any
@@ -12,9 +12,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
-from matplotlib.container import ErrorbarContainer
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
 from vibroimpact.io.records import write_cells, write_text
@@ -89,77 +87,40 @@ class Sheet:
         low: ArrayLike | None = None,
         high: ArrayLike | None = None,
         tags: dict | None = None,
+        band: bool = True,
         **style: Any,
-    ) -> Line2D:
-        """Draw y over x, and a band from low to high if given; return the line.
+    ) -> None:
+        """Draw y over x, with its range from low to high if given: as a band, or as bars.
 
-        x, y: (column, values) with values (point,) in SI.
+        x, y: (column, values) with values (point,) in SI, as low and high.
         tags: {column: value} that identify the curve, recorded with each point.
         """
         (x_column, x_values), (y_column, y_values) = x, y
+        values: dict[str, ArrayLike] = {x_column: x_values, y_column: y_values}
+        ends: dict[str, ArrayLike] = {}
+        across, middle = shown(x_column, x_values), shown(y_column, y_values)
+        bottom, top = middle, middle
         if low is not None and high is not None:
-            band = shown(x_column, x_values), shown(y_column, low), shown(y_column, high)
-            axes.fill_between(*band, color=style.get("color"), alpha=0.18, linewidth=0)
-            tags = {**(tags or {}), f"{y_column}_low": low, f"{y_column}_high": high}
-        place = self.record(axes, curve, **(tags or {}), **{x_column: x_values, y_column: y_values})
-        (line,) = axes.plot(
-            shown(x_column, x_values), shown(y_column, y_values), gid=place, **style
-        )
-        self._label(axes, x_column, y_column)
-        return line
-
-    def bars(
-        self,
-        axes: Axes,
-        x: Column,
-        y: Column,
-        curve: str,
-        low: ArrayLike,
-        high: ArrayLike,
-        tags: dict | None = None,
-        **style: Any,
-    ) -> ErrorbarContainer:
-        """Draw points with bars from low to high, (point,) each, in SI; return the container."""
-        (x_column, x_values), (y_column, y_values) = x, y
-        ends = {f"{y_column}_low": low, f"{y_column}_high": high}
-        values = {x_column: x_values, y_column: y_values, **ends}
+            ends = {f"{y_column}_low": low, f"{y_column}_high": high}
+            bottom, top = shown(y_column, low), shown(y_column, high)
+        values = {**ends, **values} if band else {**values, **ends}
         place = self.record(axes, curve, **(tags or {}), **values)
-        middle = shown(y_column, y_values)
-        spread = np.array([middle - shown(y_column, low), shown(y_column, high) - middle])
+        if ends and not band:
+            spread = np.maximum([middle - bottom, top - middle], 0.0)
+            style = {"capsize": 2, "linewidth": 1, **style}
+            axes.errorbar(across, middle, spread, **style).lines[0].set_gid(place)
+        else:
+            if ends:
+                colour = style.get("color")
+                axes.fill_between(across, bottom, top, color=colour, alpha=0.18, linewidth=0)
+            axes.plot(across, middle, gid=place, **style)
         self._label(axes, x_column, y_column)
-        container = axes.errorbar(
-            shown(x_column, x_values),
-            middle,
-            np.maximum(spread, 0.0),
-            **{"capsize": 2, "linewidth": 1, **style},
-        )
-        container.lines[0].set_gid(place)
-        return container
-
-    def mark(
-        self,
-        axes: Axes,
-        column: str,
-        value: float,
-        curve: str,
-        vertical: bool = True,
-        **style: Any,
-    ) -> Line2D:
-        """Draw a line across the axes at one value of a column (vertical: of the x axis)."""
-        self.record(axes, curve, **{column: value})
-        place = float(shown(column, value))
-        return axes.axvline(place, **style) if vertical else axes.axhline(place, **style)
 
     def note(self, axes: Axes, text: str, x_column: str, y_column: str) -> None:
         """Write into empty axes why they are empty, and label them."""
         lines = textwrap.fill(text, NOTE_WIDTH)
         axes.text(0.5, 0.5, lines, transform=axes.transAxes, ha="center", va="center", fontsize=8)
         self._label(axes, x_column, y_column)
-
-    def legend(self, axes: Axes, **style: Any) -> None:
-        """Add the legend of the axes, if any artist has a label."""
-        if axes.get_legend_handles_labels()[1]:
-            axes.legend(**style)
 
     def save(self, folder: str | Path) -> None:
         """Write name.png, name.pdf, name.csv and the caption as name.txt into a folder.
@@ -177,8 +138,7 @@ class Sheet:
         with whole_file(folder / f"{self.name}.pdf") as file:
             about = {"CreationDate": None, "Title": self.name}
             FigureCanvasPdf(self.figure).print_pdf(file, metadata=about)
-        columns = self.columns()
-        write_cells(columns, self.cells(columns), folder / f"{self.name}.csv")
+        write_cells(self.columns(), self.cells(), folder / f"{self.name}.csv")
         write_text(self.caption + "\n", folder / f"{self.name}.txt")
 
     def columns(self) -> list[str]:
@@ -189,11 +149,9 @@ class Sheet:
             *dict.fromkeys(column for _, _, table in self.tables for column in table),
         ]
 
-    def cells(self, columns: Sequence[str]) -> Iterator[tuple]:
-        """Yield the rows of the table as tuples; cells that do not apply are empty texts.
-
-        columns: as columns() returns them.
-        """
+    def cells(self) -> Iterator[tuple]:
+        """Yield the rows of the table as tuples; cells that do not apply are empty texts."""
+        columns = self.columns()
         for panel, curve, table in self.tables:
             values: list[Iterable] = [
                 rounded(table[column]) if column in table else repeat("") for column in columns[2:]
@@ -202,8 +160,7 @@ class Sheet:
 
     def rows(self) -> list[dict]:
         """Return the table as a list of {column: value}."""
-        columns = self.columns()
-        return [dict(zip(columns, row, strict=True)) for row in self.cells(columns)]
+        return [dict(zip(self.columns(), row, strict=True)) for row in self.cells()]
 
     def _label(self, axes, x_column, y_column):
         if not axes.get_xlabel():

@@ -66,15 +66,15 @@ ORDERED = ListedColormap(matplotlib.colormaps["viridis"](np.linspace(0.0, 0.9, 2
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 METHODS = {
-    # method -> (name in legends, colour, marker)
-    "peak_half": ("peak width at 1/2", ORANGE, "v"),
-    "peak_quarter": ("peak width at 1/4", BROWN, "<"),
-    "peak_25th": ("peak width at 1/25", SKY, ">"),
-    "lscf": ("LSCF pole", BLUE, "o"),
-    "ods": ("deflection shape", GREEN, "s"),
-    "broadband": ("broadband PSD", RED, "D"),
-    "statistical_linearisation": ("statistical linearisation", PINK, "x"),
-    "secant": ("mean secant stiffness", BLACK, "+"),
+    # method -> (colour, marker)
+    "peak_half": (ORANGE, "v"),
+    "peak_quarter": (BROWN, "<"),
+    "peak_25th": (SKY, ">"),
+    "lscf": (BLUE, "o"),
+    "ods": (GREEN, "s"),
+    "broadband": (RED, "D"),
+    "statistical_linearisation": (PINK, "x"),
+    "secant": (BLACK, "+"),
 }
 OPEN_METHODS = ("peak_half", "peak_quarter", "peak_25th")
 GAP_COLOURS = (BLUE, ORANGE, GREEN, RED, PINK, BLACK, SKY, BROWN)

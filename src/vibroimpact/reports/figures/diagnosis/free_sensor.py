@@ -32,9 +32,11 @@ def free_sensor_figure(evidence: xr.Dataset) -> Plot:
     """Return the Plot of the waveform of a sensor that was left free, and the errors of all."""
     states, error = shown_states(evidence), evidence["free_error"].values[:, 0]
     free = int(evidence["waveform_channel"].values)
-    channels = _chosen(error, free)
+    known = np.flatnonzero(np.isfinite(error[0])).tolist()
+    known.sort(key=lambda channel: (channel != free, -error[-1, channel]))
+    channels = known[:MOST_CHANNELS]  # the free one first, then by their error before
     names = evidence["channel_name"].values
-    left = int(np.isfinite(error[0]).sum()) - len(channels)
+    left = len(known) - len(channels)
     words = f" {left} sensors that are predicted better are left out." if left else ""
     level = level_in_words(evidence, int(evidence["waveform_stretch"].values))
     errors = " → ".join(percent(error[state, free]) for state, _ in states)
@@ -51,13 +53,6 @@ def free_sensor_figure(evidence: xr.Dataset) -> Plot:
         (WIDTH_IN, 3.8 + 0.24 * len(channels)),
         heights=(2.3, 0.7 + 0.24 * len(channels)),
     )
-
-
-def _chosen(error, free):
-    """Return the channels that are drawn, the free one first, then by their error before."""
-    known = np.flatnonzero(np.isfinite(error[0]))
-    order = sorted(known.tolist(), key=lambda channel: (channel != free, -error[-1, channel]))
-    return order[:MOST_CHANNELS]
 
 
 def _waveform(evidence, states, title):

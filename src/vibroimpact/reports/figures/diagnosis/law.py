@@ -50,7 +50,13 @@ def law_figure(evidence: xr.Dataset) -> Plot:
     errors = [force_error(evidence, state, told) for state, _ in states]
     words = ("model as given", "completed")
     title = f"Demanded forces: error of {before_and_after(errors, words)}"
-    rows = _rows(evidence, panels)
+    owned: dict[str, list[str]] = {}  # a row of panels per support if one has several
+    for key, places in panels.items():
+        owned.setdefault(str(evidence["owner_name"].values[places[0]]), []).append(key)
+    rows = in_rows(list(panels), min(ACROSS, len(panels)))
+    if len(owned) < len(panels):
+        across = max(map(len, owned.values()))
+        rows = [filled for row in owned.values() for filled in in_rows(row, across)]
     orbit = any(len(places) == 2 for places in panels.values())
     about = CAPTION.format(panels=ORBIT if orbit else "", unseen=unseen)
     return Plot(
@@ -139,17 +145,6 @@ def _panels(evidence, told):
         if len(own) == 2:
             panels[f"{owner}, both"] = own
     return panels
-
-
-def _rows(evidence, panels):
-    """Return the rows of keys: a row per support if one has several panels."""
-    rows: dict[str, list[str]] = {}
-    for key, places in panels.items():
-        rows.setdefault(str(evidence["owner_name"].values[places[0]]), []).append(key)
-    if len(rows) == len(panels):
-        return in_rows(list(panels), min(ACROSS, len(panels)))
-    across = max(map(len, rows.values()))
-    return [filled for row in rows.values() for filled in in_rows(row, across)]
 
 
 def _law_panel(evidence, places, states):

@@ -159,16 +159,13 @@ def _structure(sheet, axes, places, view):
     for number, (name, place) in enumerate(places.supports.items()):
         angle = 0.0
         if places.line is not None:
-            along = view.seen(_tangent(places.line, place))
+            line = places.line
+            nearest = np.argmin(np.linalg.norm(line - place, axis=1))
+            at = int(np.clip(nearest, 1, len(line) - 2))
+            along = view.seen(line[at + 1] - line[at - 1])
             angle = np.degrees(np.arctan2(along[1], along[0])) + 90.0
         bar |= {"marker": (2, 0, angle - 90.0), "label": "support" if number == 0 else None}
         sheet.line(axes, *view.columns(place), f"support {name}", **bar)
-
-
-def _tangent(line, place):
-    """Return the direction (3,) of a line at the point of it that is nearest to a place."""
-    at = int(np.clip(np.argmin(np.linalg.norm(line - place, axis=1)), 1, len(line) - 2))
-    return line[at + 1] - line[at - 1]
 
 
 def _directed(sheet, axes, places, seen, look):

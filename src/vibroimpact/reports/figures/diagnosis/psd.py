@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from vibroimpact.diagnosis.verdict.content import Misfit, Verdict
+from vibroimpact.diagnosis.verdict.content import Verdict
+from vibroimpact.io.units import SI_OF_KIND
 from vibroimpact.reports.figures.plot import Axis, Panel, Plot, Series
 from vibroimpact.reports.figures.quicklook import PSD_COLUMNS
 from vibroimpact.reports.figures.sheet import WIDTH_IN
@@ -19,13 +20,6 @@ MOST_RECORDS, CHANNELS_SHOWN = 3, 2
 BELOW = 1.0e-8  # of the largest PSD: the lowest drawn
 LOWEST = 1.0e-5  # of the peak of a measured PSD: a lower one is no response
 LOWEST_HZ, PASSED = 1.0, 0.78  # drawn from; of the highest line, which a filter has passed
-SI_UNITS = {
-    "acceleration": "m s-2",
-    "velocity": "m s-1",
-    "displacement": "m",
-    "contact_force": "N",
-    "strain": "1",
-}
 MOVES = 1.0e-3  # of the power of the channel of its kind that moves most
 
 CAPTION = (
@@ -51,20 +45,14 @@ def psd_figure(psd: xr.Dataset, verdict: Verdict) -> Plot:
         for channel in channels
         for record in records
     }
-    title = _title(verdict.misfit.holdout, completed)
+    title, apart = "Spectra of free runs", verdict.misfit.holdout
+    if apart is not None and apart.before_dB is not None:
+        told = [apart.before_dB, *([apart.after_dB] if completed else [])]
+        words = " → ".join(f"{value:.2g} dB" for value in told if value is not None)
+        floor = f", floor {apart.floor_dB:.2g} dB" if apart.floor_dB is not None else ""
+        title = f"{title}, held out: {words} off{floor}"
     size = (min(1.0 + 2.9 * len(records), WIDTH_IN), 1.3 + 2.4 * len(channels))
     return Plot("diagnosis_psd", title, CAPTION, panels, rows, size, share="x", legend=3)
-
-
-def _title(misfit: Misfit | None, completed: bool) -> str:
-    """Return the misfit of the held-out records, before and after."""
-    if misfit is None or misfit.before_dB is None:
-        return "Spectra of free runs"
-    told = [f"{misfit.before_dB:.2g} dB"]
-    if completed and misfit.after_dB is not None:
-        told.append(f"{misfit.after_dB:.2g} dB")
-    floor = f", floor {misfit.floor_dB:.2g} dB" if misfit.floor_dB is not None else ""
-    return f"Spectra of free runs, held out: {' → '.join(told)} off{floor}"
 
 
 def _gap(psd):
@@ -124,7 +112,7 @@ def _panel(psd, record, channel, completed):
         tags = {"record": name, "channel": sensor}
         items.append(Series(label, frequency[shown], values[row], tags, **look))
     drawn = values[: len(curves)]
-    level = Axis(PSD_COLUMNS.get(SI_UNITS.get(_kind(psd, channel), ""), "psd_unit2_per_Hz"), True)
+    level = Axis(PSD_COLUMNS.get(SI_OF_KIND.get(_kind(psd, channel), ""), "psd_unit2_per_Hz"), True)
     largest = np.nanmax(drawn)
     if largest > 0.0:
         least = max(np.nanmin(np.where(drawn > 0.0, drawn, np.nan)), BELOW * largest)

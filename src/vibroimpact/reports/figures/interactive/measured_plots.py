@@ -1,74 +1,34 @@
-"""The plots of the page of a measured tube, and the controls that they follow."""
+"""The plots of the page of a measured tube: those of a study, and its stabilisation charts."""
 
 from __future__ import annotations
 
-from typing import Any
-
-from plotly.offline import get_plotlyjs
-
 from vibroimpact.equivalent_support.measured.equivalent_of import MeasuredSupports
-from vibroimpact.reports.equivalent_answer import places_of, with_places
-from vibroimpact.reports.figures.study.linear_limits import shown_band
 from vibroimpact.reports.figures.study.psd_table import driven_sensor
 from vibroimpact.reports.figures.study.stabilisation import chart_panel
-from vibroimpact.reports.measured_content import LEVELS, MeasuredContent
+from vibroimpact.reports.study_content import StudyContent
 from vibroimpact.reports.study_page import PagePlots
 
-from .equivalent import equivalent_plots
-from .page_plot import Control, Frames, PagePlot, frame_places, shown_sections
-from .spectrum import spectra_of_sensor, spectrum_plot
+from .page_plot import PagePlot
+from .study_plots import StudyFiles, study_plots
 
 
-def measured_plots(content: MeasuredContent, found: MeasuredSupports) -> PagePlots:
+def measured_plots(content: StudyContent, found: MeasuredSupports) -> PagePlots:
     """Return the plots of the page, its controls, and the source of plotly.js."""
-    gaps, pairs = places_of(content.answers)
-    levels = sorted({case.load_rms_N for case in found.spectra})
-    frames = frame_places(gaps, levels)
-    sections = {
-        "answer": [
-            *equivalent_plots(content.answers, _summary(found), content.level_label),
-            _stabilisation(found, frames),
-        ],
-        "response": [_spectrum(found, frames)],
-        **{name: [] for name in ("contact", "stress", "energy")},
-    }
-    factor = LEVELS[found.levels][2]
-    shown = [factor * level for level in levels]
-    controls = [
-        Control("gap", "Gap", [f"{1e3 * gap:.3g} mm" for gap in gaps]),
-        Control("place", "Supports, direction", [", ".join(pair) for pair in pairs]),
-        Control("load", "Level", [f"{level:.3g} {content.unit} RMS" for level in shown], shown),
-    ]
-    return PagePlots(shown_sections(sections), controls, get_plotlyjs())
-
-
-def _summary(found: MeasuredSupports) -> list[dict[str, Any]]:
-    """Return the rows of the summary, levels in the unit of the page."""
-    factor = LEVELS[found.levels][2]
-    rows = with_places(found.summary, found.rows[0]["direction"])
-    return [{**row, "load_rms_N": factor * row["load_rms_N"]} for row in rows]
-
-
-def _spectrum(found: MeasuredSupports, frames: Frames) -> PagePlot:
-    """Return the plot of the spectrum at the response point."""
     files = {f"{case.id}.nc": dataset for case, dataset in found.spectra.items()}
-    sensor = driven_sensor(found.config, found.config.identification.response_point)
-    places = [place for _, place in frames]
-    frequency, spectra = spectra_of_sensor(list(files), lambda path, _: files[path], sensor, places)
-    band = shown_band(found.model, float(frequency[-1]))
-    return spectrum_plot(frequency, spectra, frames, sensor, band, "segments and records")
+    factor = content.load_factor
+    summary = [{**row, "load_rms_N": factor * row["load_rms_N"]} for row in found.summary]
+    given = StudyFiles(found.model, [], [*files], [], summary, lambda path, _=(): files[path])
+    plots = study_plots(content, given)
+    chart = _stabilisation(found)
+    answer = [*plots.sections["answer"], *([chart] if chart.has_traces() else [])]
+    return plots._replace(sections={**plots.sections, "answer": answer})
 
 
-def _stabilisation(found: MeasuredSupports, frames: Frames) -> PagePlot:
+def _stabilisation(found: MeasuredSupports) -> PagePlot:
     """Return the plot of the charts by gap and load, of the first record of each."""
     identification = found.config.identification
     sensor = driven_sensor(found.config, identification.response_point)
     first = {(case.gap_m, case.load_rms_N): case for case in sorted(found.curves, reverse=True)}
-    charts = {
-        key: (found.curves[first[place]], found.spectra[first[place]])
-        for key, place in frames
-        if place in first and "chart_order" in found.curves[first[place]]
-    }
     return PagePlot(
         "stabilisation",
         "Stabilisation chart of the LSCF pole",
@@ -78,8 +38,11 @@ def _stabilisation(found: MeasuredSupports, frames: Frames) -> PagePlot:
             " poles stands at the peak."
         ),
         {
-            key: chart_panel(*files, sensor, identification.lscf.band_Hz)
-            for key, files in charts.items()
+            place: chart_panel(
+                found.curves[case], found.spectra[case], sensor, identification.lscf.band_Hz
+            )
+            for place, case in first.items()
+            if "chart_order" in found.curves[case]
         },
         ("gap", "load"),
         empty="No pole was found at the main peak.",

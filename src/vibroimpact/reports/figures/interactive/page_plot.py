@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from vibroimpact.reports.figures.plot import Axis, Bars, Cells, Look, Mark, Panel, Series, Span
+from vibroimpact.reports.figures.plot import Axis, Bars, Look, Mark, Panel, Series, Span
 from vibroimpact.reports.figures.style import GREY, label_of, shown
 
 DIGITS = 4  # of the numbers on the page; more would double its size
@@ -32,7 +32,6 @@ GRID = "#E6E6E6"
 BAND = 0.18  # opacity
 PLAIN_DECADES = 4.0
 Place = tuple[float, float]  # gap in m, load
-Frames = Sequence[tuple[str, Place]]  # keys of frames and what they show
 EMPTY_WIDTH = 36  # characters of a line in a plot without traces, which a phone shows uncut
 SHARED_POINTS = 20  # from it on, x values that recur are written once
 
@@ -44,12 +43,14 @@ class Control:
     name: as plots call it: gap, place or load.
     label: in words.
     values: text of each position.
+    keys: what each position chooses.
     numbers: the value of each position, for the mark on axes of load; empty for none.
     """
 
     name: str
     label: str
     values: Sequence[str]
+    keys: Sequence[Any]
     numbers: Sequence[float] = ()
 
 
@@ -59,8 +60,8 @@ class PagePlot:
 
     name: of its element.
     title, caption: its content in words.
-    frames: {indices of the controls, such as "0,3": Panel}.
-    controls: names of the controls that choose the frame, in the order of the indices.
+    frames: {(a key of each control): Panel}.
+    controls: names of the controls that choose the frame, in the order of the keys.
     empty: sentence for a position without a panel.
     wide: whether it has the whole width of the page.
     cursor: whether the load of the slider is marked on the axis.
@@ -71,7 +72,7 @@ class PagePlot:
     name: str
     title: str
     caption: str
-    frames: Mapping[str, Panel]
+    frames: Mapping[tuple, Panel]
     controls: tuple[str, ...] = ()
     empty: str = "Nothing to show here."
     wide: bool = False
@@ -83,45 +84,36 @@ class PagePlot:
         """Whether anything is drawn at any position of the controls."""
         return not all(panel.is_empty() for panel in self.frames.values())
 
-    def drawn(self) -> dict[str, Any]:
-        """Return the input of the page's script, as plain values."""
-        kept = {key: panel for key, panel in self.frames.items() if not panel.is_empty()}
+    def drawn(self, controls: Sequence[Control] = ()) -> dict[str, Any]:
+        """Return the input of the page's script, as plain values; controls: those of the page."""
+        by_name = {control.name: list(control.keys) for control in controls}
+        keys = [by_name[name] for name in self.controls]
+        kept = {
+            ",".join(str(own.index(key)) for own, key in zip(keys, chosen, strict=True)): panel
+            for chosen, panel in self.frames.items()
+            if not panel.is_empty()
+        }
         frames = {key: traces_of(panel) for key, panel in kept.items()}
-        panels = list(self.frames.values())
         ranges = {key: _range(panel.y) for key, panel in kept.items() if _range(panel.y)}
         alike = len({tuple(ends) for ends in ranges.values()}) < 2 and len(ranges) == len(kept)
-        layout = _layout(panels, frames, self.height)
+        layout = _layout(next(iter(self.frames.values())), frames, self.height)
         if alike and ranges:
             layout["yaxis"]["range"] = next(iter(ranges.values()))
+        shared: dict[tuple, str] = {}
+        for trace in [trace for traces in frames.values() for trace in traces]:
+            if len(trace["x"]) > SHARED_POINTS:
+                name = shared.setdefault(tuple(trace["x"]), f"x{len(shared)}")
+                trace["x"] = f"@{name}"
         return {
             "name": self.name,
             "layout": {**layout, **self.more},
-            "shared": _share_x(frames),
+            "shared": {name: list(values) for values, name in shared.items()},
             "frames": frames,
             "controls": self.controls,
             "empty": "<br>".join(textwrap.wrap(self.empty, EMPTY_WIDTH)),
             "cursor": self.cursor,
             "ranges": {} if alike else ranges,
         }
-
-
-def shown_sections(sections: Mapping[str, Sequence[PagePlot]]) -> dict[str, list[PagePlot]]:
-    """Return the plots of each section in which something is drawn."""
-    return {name: [plot for plot in plots if plot.has_traces()] for name, plots in sections.items()}
-
-
-def frame_places(gaps: Sequence[float], loads: Sequence[float]) -> Frames:
-    """Return (key of the frame, (gap, load)) of every position of the controls."""
-    return [
-        (key_of(row, column), (gap, load))
-        for row, gap in enumerate(gaps)
-        for column, load in enumerate(loads)
-    ]
-
-
-def key_of(*indices: int) -> str:
-    """Return the key of a frame."""
-    return ",".join(map(str, indices))
 
 
 def unit_of(title: str) -> str:
@@ -145,8 +137,6 @@ def traces_of(panel: Panel) -> list[dict[str, Any]]:
             found += _series(panel, item)
         elif isinstance(item, Bars):
             found.append(_bars(panel, item))
-        elif isinstance(item, Cells):
-            found.append(_cells(panel, item))
         elif isinstance(item, Mark) and item.axis == "y" and panel.x.low and panel.x.high:
             ends = [panel.x.low, panel.x.high]
             line = Series(item.curve, ends, [item.value] * 2, label=item.label)
@@ -162,9 +152,19 @@ def _series(panel: Panel, item: Series) -> list[dict[str, Any]]:
     if item.band:
         edge = {"type": "scatter", "mode": "lines", "x": trace["x"], "line": {"width": 0}}
         edge |= {"hoverinfo": "skip", "showlegend": False}
-        filled = {"fill": "tonexty", "fillcolor": _pale(item.colour)}
+        red_green_blue = [str(int(item.colour[at : at + 2], 16)) for at in (1, 3, 5)]
+        pale = f"rgba({','.join(red_green_blue)},{BAND})"
+        filled = {"fill": "tonexty", "fillcolor": pale}
         return [{**edge, "y": numbers(low)}, {**edge, "y": numbers(high), **filled}, trace]
-    return [trace | {"error_y": _range_bars(low, middle, high)}]
+    ends = {
+        "type": "data",
+        "symmetric": False,
+        "array": numbers(np.maximum(high - middle, 0.0)),
+        "arrayminus": numbers(np.maximum(middle - low, 0.0)),
+        "thickness": 1,
+        "width": 3,
+    }
+    return [trace | {"error_y": ends}]
 
 
 def _trace(panel: Panel, item: Series) -> dict[str, Any]:
@@ -197,68 +197,19 @@ def _trace(panel: Panel, item: Series) -> dict[str, Any]:
 
 
 def _bars(panel: Panel, item: Bars) -> dict[str, Any]:
-    names = list(panel.x.names)
-    values = _in_unit(panel.y, item.values)
-    trace = {
+    return {
         "type": "bar",
         "name": item.label,
-        "x": [names[place] for place in np.asarray(item.places, int)] if names else item.places,
-        "y": numbers(values),
+        "x": [panel.x.names[place] for place in np.asarray(item.places, int)],
+        "y": numbers(_in_unit(panel.y, item.values)),
         "marker": {"color": item.colour},
         "hovertemplate": f"%{{x}} {item.label}: %{{y:.4g}} {unit_of(_title(panel.y))}"
         "<extra></extra>",
-    }
-    if not names:
-        trace |= {"x": numbers(_in_unit(panel.x, item.places)), "width": item.thickness}
-    if item.low is not None and item.high is not None:
-        low, high = _in_unit(panel.y, item.low), _in_unit(panel.y, item.high)
-        trace["error_y"] = _range_bars(low, values, high)
-    if item.texts:
-        trace |= {"text": list(item.texts), "textposition": "outside", "textangle": 0}
-        trace |= {"constraintext": "none", "cliponaxis": False}
-    return trace
-
-
-def _cells(panel: Panel, item: Cells) -> dict[str, Any]:
-    last = len(item.colours) - 1
-    return {
-        "type": "heatmap",
-        "x": list(panel.x.names),
-        "y": list(panel.y.names),
-        "z": [list(row) for row in item.kinds],
-        "text": [list(row) for row in item.texts],
-        "customdata": [list(row) for row in item.hover],
-        "texttemplate": "%{text}",
-        "hovertemplate": "%{customdata}<extra></extra>",
-        "zmin": 0,
-        "zmax": last,
-        "colorscale": [[place / last, colour] for place, colour in enumerate(item.colours)],
-        "showscale": False,
-        "xgap": 2,
-        "ygap": 2,
-    }
-
-
-def _range_bars(low: np.ndarray, middle: np.ndarray, high: np.ndarray) -> dict[str, Any]:
-    """Return error bars from low to high, values in the unit of the axis."""
-    return {
-        "type": "data",
-        "symmetric": False,
-        "array": numbers(np.maximum(high - middle, 0.0)),
-        "arrayminus": numbers(np.maximum(middle - low, 0.0)),
-        "thickness": 1,
-        "width": 3,
     }
 
 
 def _line(item: Look) -> dict[str, Any]:
     return {"color": item.colour, "width": item.width or 1.2, "dash": DASHES[item.line]}
-
-
-def _pale(colour: str) -> str:
-    """Return a colour "#rrggbb" with the opacity of a band."""
-    parts = [str(int(colour[at : at + 2], 16)) for at in (1, 3, 5)]
-    return f"rgba({','.join(parts)},{BAND})"
 
 
 def _in_unit(axis: Axis, values: ArrayLike) -> np.ndarray:
@@ -271,22 +222,8 @@ def _title(axis: Axis) -> str:
     return axis.label or label_of(axis.column)
 
 
-def _share_x(frames: dict[str, list[dict]]) -> dict[str, list]:
-    """Write long lists of x that recur in the traces as "@name", and return {name: list}."""
-    names: dict[tuple, str] = {}
-    for traces in frames.values():
-        for trace in traces:
-            if len(trace["x"]) > SHARED_POINTS:
-                name = names.setdefault(tuple(trace["x"]), f"x{len(names)}")
-                trace["x"] = f"@{name}"
-    return {name: list(values) for values, name in names.items()}
-
-
-def _layout(
-    panels: Sequence[Panel], frames: Mapping[str, list[dict]], height: int
-) -> dict[str, Any]:
+def _layout(first: Panel, frames: Mapping[str, list[dict]], height: int) -> dict[str, Any]:
     """Return the layout of a plot with a legend below it."""
-    first = panels[0]
     layout = {
         "xaxis": _axis(first.x, frames, "x"),
         "yaxis": _axis(first.y, frames, "y"),
@@ -324,8 +261,7 @@ def _axis(axis: Axis, frames: Mapping[str, list[dict]], letter: str) -> dict[str
         "exponentformat": "power",
     }
     if axis.names:
-        turned = {"autorange": "reversed"} if letter == "y" else {"tickangle": -60}
-        return drawn | {"type": "category", **turned}
+        return drawn | {"type": "category", "tickangle": -60}
     if letter == "x" and _range(axis):
         drawn["range"] = _range(axis)
     if not axis.log:

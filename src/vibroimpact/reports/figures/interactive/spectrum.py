@@ -12,10 +12,10 @@ import numpy as np
 from vibroimpact.identify.spectra.welch import psd_statistics, segment_spectra
 from vibroimpact.reports.figures.plot import Axis, Panel, Series
 from vibroimpact.reports.figures.study.cases_of_gap import paths_at
-from vibroimpact.reports.figures.study.psd_table import STATISTICS
+from vibroimpact.reports.figures.study.psd_table import STATISTICS, pooled
 from vibroimpact.reports.figures.style import BLUE
 
-from .page_plot import Frames, PagePlot, Place
+from .page_plot import PagePlot, Place
 
 SERIES = ("displacement",)
 MOST_DECADES = 10.0  # of the axis; below is round-off of a sine
@@ -35,20 +35,18 @@ def spectra_of_sensor(
 
     The mean is over segments and seeds, min and max over both.
     """
-    names = [f"psd_displacement_{statistic}" for statistic in STATISTICS]
+    names = {statistic: f"psd_displacement_{statistic}" for statistic in STATISTICS}
     found: dict[Place, dict[str, np.ndarray]] = {}
     counts, frequency = Counter[Place](), np.zeros(0)
     for place, path in paths_at(paths, places):
-        dataset = read(path, names)
+        dataset = read(path, [*names.values()])
         at = [str(name) for name in dataset["sensor"].values].index(sensor)
         frequency = dataset["frequency"].values
+        psds = {key: dataset[name].values[at].astype(float) for key, name in names.items()}
+        found[place] = pooled(found.get(place), psds)
         counts[place] += 1
-        known = found.setdefault(place, {})
-        for statistic, combine in STATISTICS.items():
-            values = dataset[f"psd_displacement_{statistic}"].values[at].astype(float)
-            known[statistic] = combine(known[statistic], values) if statistic in known else values
-    for place, known in found.items():
-        known["mean"] = known["mean"] / counts[place]
+    for place, psds in found.items():
+        psds["mean"] = psds["mean"] / counts[place]
     return frequency, found
 
 
@@ -114,15 +112,13 @@ def blocks_of(frequency: np.ndarray, band_Hz: Band) -> np.ndarray:
 def spectrum_plot(
     frequency: np.ndarray,
     spectra: dict[Place, dict[str, np.ndarray]],
-    places: Frames,
     sensor: str,
     band_Hz: Band,
-    over: str = "segments and seeds",
+    over: str,
 ) -> PagePlot:
     """Return the plot of the spectrum of a sensor by gap and load.
 
     frequency, spectra: of spectra_of_sensor.
-    places: (key of the frame, (gap, load)).
     band_Hz: the band that is shown.
     over: the things that the mean is over.
     """
@@ -132,15 +128,12 @@ def spectrum_plot(
     starts = edges[:-1] - edges[0]
     middle = np.add.reduceat(frequency[inside], starts) / sizes
     curves = {}
-    for key, place in places:
-        if place in spectra:
-            values = spectra[place]
-            mean = np.add.reduceat(values["mean"][inside], starts) / sizes
-            low = np.minimum.reduceat(values["min"][inside], starts)
-            high = np.maximum.reduceat(values["max"][inside], starts)
-            curves[key] = Series(
-                "spectrum", middle, mean, {}, low, high, True, label="mean", colour=BLUE, width=1.4
-            )
+    for place, values in spectra.items():
+        mean = np.add.reduceat(values["mean"][inside], starts) / sizes
+        low = np.minimum.reduceat(values["min"][inside], starts)
+        high = np.maximum.reduceat(values["max"][inside], starts)
+        look: dict[str, Any] = {"label": "mean", "colour": BLUE, "width": 1.4}
+        curves[place] = Series("spectrum", middle, mean, {}, low, high, True, **look)
     axis = Axis("frequency_Hz", False, float(middle[0]), float(middle[-1]))
     levels = _levels(curves)
     return PagePlot(
@@ -151,7 +144,7 @@ def spectrum_plot(
             " (line), smallest and largest segment (band). Move the slider to see the peaks move"
             " and widen as the contact sets in; the axis follows the level and keeps its decades."
         ),
-        {key: Panel(axis, levels[key], [curve]) for key, curve in curves.items()},
+        {place: Panel(axis, levels[place], [curve]) for place, curve in curves.items()},
         ("gap", "load"),
         empty="No spectrum of this load was read: the slider shows a selection of the loads.",
         wide=True,
@@ -159,8 +152,8 @@ def spectrum_plot(
     )
 
 
-def _levels(curves: dict[str, Series]) -> dict[str, Axis]:
-    """Return {key: vertical axis}, each of the same number of decades below its largest value."""
+def _levels(curves: dict[Place, Series]) -> dict[Place, Axis]:
+    """Return {place: vertical axis}, each of the same number of decades below its largest value."""
     ends = {}
     for key, curve in curves.items():
         mean = np.asarray(curve.y)

@@ -49,17 +49,6 @@ def figure_12_broadband(config, model, curves, spectra, rows):
     return Plot("figure_12_broadband", title, caption, panels, size=(7.6, 4.6), colour_bars=[bar])
 
 
-def _values(found):
-    """Return the identified support in words."""
-    if len(found) > 1:
-        return "each support with its own k and c"
-    if not found or not np.isfinite(found[0]["k_N_per_m"]):
-        return "no k resolved"
-    k, c = found[0]["k_N_per_m"], found[0]["c_N_s_per_m"]
-    damping = f"c = {number(c)} N s/m" if np.isfinite(c) else "c not resolved"
-    return f"k = {number(k)} N/m, {damping}"
-
-
 def _panel(config, model, files, stiffness, found):
     """Return the Panel of range, target and best member for one load.
 
@@ -79,7 +68,11 @@ def _panel(config, model, files, stiffness, found):
         for k, psd in zip(stiffness, members, strict=True)
     ]
     items.append(Series("target", frequency, target, label="with contact (target)", width=1.0))
-    title = f"load {load:.3g} N RMS\n{_values(found)}"
+    k, c = (found[0][name] for name in ("k_N_per_m", "c_N_s_per_m")) if found else (np.nan, np.nan)
+    damping = f"c = {number(c)} N s/m" if np.isfinite(c) else "c not resolved"
+    words = f"k = {number(k)} N/m, {damping}" if np.isfinite(k) else "no k resolved"
+    words = "each support with its own k and c" if len(found) > 1 else words
+    title = f"load {load:.3g} N RMS\n{words}"
     if "broadband_curve" in fitted:
         place, best = (fitted[name].values for name in ("broadband_frequency", "broadband_curve"))
         label = f"best linear, correlation {float(fitted['best_correlation']):.3f}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -30,31 +29,22 @@ def paths_at(paths, places):
             yield (case.gap_m, case.load_rms_N), path
 
 
-class CasesOnDemand(Mapping):
-    """{Case: read(path)} of paths named after cases, ordered by case.
-
-    A file is read when its case is first used; its content is then cached.
-    """
+class ReadOnDemand(dict):
+    """{Case: read(path)} of {Case: path}; a file is read when its case is first asked for."""
 
     def __init__(self, paths, read):
-        self._paths = dict(sorted((case_from_id(Path(path).stem), path) for path in paths))
-        self._read, self._kept = read, {}
+        super().__init__()
+        self._paths, self._read = paths, read
 
-    def __getitem__(self, case):
-        if case not in self._kept:
-            self._kept[case] = self._read(self._paths[case])
-        return self._kept[case]
-
-    def __iter__(self):
-        return iter(self._paths)
-
-    def __len__(self):
-        return len(self._paths)
+    def __missing__(self, case):
+        self[case] = self._read(self._paths[case])
+        return self[case]
 
 
-def cases_of_gap(paths, config, read):
-    """Return the CasesOnDemand of the paths of the gap shown."""
-    return CasesOnDemand(paths_of_gap(paths, shown_gap(config)), read)
+def cases_of_gap(paths, config):
+    """Return {Case: path} of the paths of the gap shown, ordered by case."""
+    own = paths_of_gap(paths, shown_gap(config))
+    return dict(sorted((case_from_id(Path(path).stem), path) for path in own))
 
 
 def spread_loads(rows, count):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,17 +12,17 @@ from vibroimpact.integration.energy_limit import ENERGY_LIMIT
 from vibroimpact.reports.centred_wear import centred_sentence
 from vibroimpact.reports.figures.plot import Axis, Item, Mark, Panel, Plot, Series, Text
 from vibroimpact.reports.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PINK, RED, gap_label
+from vibroimpact.reports.study_statistics import EACH, RESIDUALS, SEVERAL, StudyStatistics
 from vibroimpact.study.cases import case_from_id
 
-from .cases_of_gap import CasesOnDemand
 from .equivalent import looks_of_gaps
-from .seed_scatter import over_seeds
+from .seed_scatter import spread
 
-RESIDUALS = {
-    # variable of a record -> (name, colour, marker)
-    "potential_energy_residual": ("with the contact's potential energy", ORANGE, "s"),
-    "energy_residual": ("with the work of the contact forces", BLUE, "o"),
-    "fixed_point_residual": ("contact iteration (bound)", GREY, "x"),
+LOOKS = {
+    # variable of a record -> (colour, marker)
+    "potential_energy_residual": (ORANGE, "s"),
+    "energy_residual": (BLUE, "o"),
+    "fixed_point_residual": (GREY, "x"),
 }
 # Largest accepted residual with the potential energy, at the paper's step; of order 2 in the step,
 # up to the limit beyond which the numbers of a run are of no use.
@@ -38,9 +39,14 @@ TERMS = {
 FLOOR = 1.0e-12  # of the input work: less, as exact zeros without contact, is drawn here
 
 
-def case_of_energies(cases):
-    """Return the Case whose energies are drawn: largest load and gap, first seed."""
-    return max(cases, key=lambda case: (case.load_rms_N, case.gap_m, -case.seed))
+def file_of_energies(paths: Sequence[str | Path]) -> str | Path:
+    """Return the record whose energies are drawn: largest load and gap, first seed."""
+
+    def order(path):
+        case = case_from_id(Path(path).stem)
+        return case.load_rms_N, case.gap_m, -case.seed
+
+    return max(paths, key=order)
 
 
 def limits(integration):
@@ -56,33 +62,39 @@ def limits(integration):
     }
 
 
-def residual_items(found, accepted) -> list[Item]:
-    """Return the points of energy residuals of cases and the Marks of their limits.
+def residuals(statistics: StudyStatistics, accepted: Mapping[str, float]) -> list[Item]:
+    """Return the points of the energy residuals of all cases and the Marks of their limits.
 
-    found: {key of RESIDUALS: (loads, values, {further column: values})}.
     accepted: {key of RESIDUALS: largest accepted value}.
     """
     items: list[Item] = []
-    for variable, (loads, values, tags) in found.items():
-        name, colour, marker = RESIDUALS[variable]
-        look: dict[str, Any] = {"colour": colour, "marker": marker, "line": "", "size": 3.5}
+    for variable, name in RESIDUALS.items():
+        cases = statistics.of_cases(variable)
+        cases.sort(key=lambda case: (case.load_rms_N, case.gap_m, case.seed))
+        if not cases:
+            continue
+        values, gaps, loads, seeds = map(np.array, zip(*cases, strict=True))
         hover = [
-            f"{value:.2g} of the input work<br>{load:.3g} RMS, gap {1e3 * gap:.3g} mm"
-            for load, value, gap in zip(loads, values, tags["gap_m"], strict=True)
+            f"{value:.2g} of the input work<br>{load:.3g} RMS, gap {1e3 * gap:.3g} mm, seed {seed}"
+            for value, gap, load, seed in cases
         ]
-        items.append(Series(variable, loads, values, tags, label=name, hover=hover, **look))
+        colour, marker = LOOKS[variable]
+        look: dict[str, Any] = {"colour": colour, "marker": marker, "line": "", "size": 3.5}
+        look |= {"label": name, "hover": hover}
+        tags = {"gap_m": gaps, "seed": seeds}
+        items.append(Series(variable, loads, np.maximum(values, FLOOR), tags, **look))
         if variable in accepted:
             curve, look = f"limit of {variable}", {"colour": colour, "line": "--", "width": 1.0}
             items.append(Mark(curve, "y", accepted[variable], **look))
     return items
 
 
-def energy_balance(config, records):
+def energy_balance(config, statistics, record):
     """Return the Plot of the residuals of all cases and of the energies of one case.
 
-    records: {Case: Dataset} of statistics.
+    statistics: StudyStatistics. record: Dataset of the case, with its energies.
     """
-    case, accepted = case_of_energies(records), limits(config.integration)
+    load, gap, seed = (record.attrs[name] for name in ("load_rms_N", "gap_m", "seed"))
     work = (
         "an identity of Newmark's scheme, closed but for round-off"
         if config.integration.scheme == "newmark"
@@ -95,38 +107,32 @@ def energy_balance(config, records):
         " bound of the error left in the implicit contact forces; dashed: accepted at"
         f" {config.integration.steps_per_second:g} steps per second. Values below {FLOOR:g}, as"
         " the zeros without contact, are drawn there. Right: energies during the case of the"
-        f" largest load ({case.load_rms_N:g} N, gap"
-        f" {gap_label(config, case.gap_m)}, seed {case.seed});"
+        f" largest load ({load:g} N, gap {gap_label(config, gap)}, seed {seed});"
         " negative times are the start-up before the record."
     )
-    loads = [key.load_rms_N for key in records]
-    tags = {name: np.array([getattr(key, name) for key in records]) for name in ("gap_m", "seed")}
-    found = {}
-    for variable in RESIDUALS:
-        values = [float(dataset[variable]) for dataset in records.values()]
-        found[variable] = (loads, np.maximum(values, FLOOR), tags)
-    residuals = Panel(
-        Axis("load_rms_N", True),
-        Axis("residual", True, 0.2 * FLOOR, 1.0e4),  # room for the legend
-        residual_items(found, accepted),
-        f"residuals of {len(records)} cases",
-        legend="upper left",
-    )
-    panels = {"residuals": residuals, "energies": _energies(records[case], case)}
-    title = "Energy balance of the simulations"
-    return Plot("energy_balance", title, caption, panels, size=(7.6, 4.4))
-
-
-def _energies(record, case):
-    """Return the Panel of the energy terms of a case over time."""
     time, largest = record["energy_time"].values, float(np.abs(record["energy"]).max())
-    items = []
+    energies = []
     for term, (name, colour, line) in TERMS.items():
         values = np.abs(record["energy"].sel(energy_term=term).values)
-        items.append(Series(term, time, values, label=name, colour=colour, line=line))
-    axis = Axis("energy_J", True, 1e-6 * largest, 1e3 * largest)  # room for the legend
-    title = f"energies at {case.load_rms_N:g} N RMS"
-    return Panel(Axis("time_s"), axis, items, title, legend="upper left")
+        energies.append(Series(term, time, values, label=name, colour=colour, line=line))
+    panels = {
+        "residuals": Panel(
+            Axis("load_rms_N", True),
+            Axis("residual", True, 0.2 * FLOOR, 1.0e4),  # room for the legend
+            residuals(statistics, limits(config.integration)),
+            f"residuals of {statistics.cases} cases",
+            legend="upper left",
+        ),
+        "energies": Panel(
+            Axis("time_s"),
+            Axis("energy_J", True, 1e-6 * largest, 1e3 * largest),
+            energies,
+            f"energies at {load:g} N RMS",
+            legend="upper left",
+        ),
+    }
+    title = "Energy balance of the simulations"
+    return Plot("energy_balance", title, caption, panels, size=(7.6, 4.4))
 
 
 STATISTICS = (
@@ -138,32 +144,15 @@ STATISTICS = (
     ("wear", "wear_work_rate", "wear_work_rate_W", "wear work rate"),
     ("stress", "stress_peak", "stress_Pa", "largest bending stress"),
 )
-# Variables that are read of every record.
-VARIABLES = (*RESIDUALS, *(variable for _, variable, _, _ in STATISTICS), "peak_force")
 
 
-def records_shown(paths, read):
-    """Return {Case: Dataset} of record files with the variables drawn here.
-
-    A file is read by read(path, names) when its case is used.
-    """
-    drawn = case_of_energies(CasesOnDemand(paths, None))
-
-    def read_one(path):
-        whole = case_from_id(Path(path).stem) == drawn
-        return read(path, (*VARIABLES, "energy") if whole else VARIABLES)
-
-    return CasesOnDemand(paths, read_one)
-
-
-def contact_statistics(config, model, records):
+def contact_statistics(config, model, statistics):
     """Return the Plot of contact statistics and peak stress against load, for every gap.
 
-    records: {Case: Dataset} of statistics.
+    statistics: StudyStatistics.
     """
     imperfection = config.integration.imperfection
-    gaps = sorted({case.gap_m for case in records}, reverse=True)
-    caveat = centred_sentence(imperfection, model.centre_offset, min(gaps))
+    caveat = centred_sentence(imperfection, model.centre_offset, min(statistics.gaps))
     caption = (
         "Contact against load, for every gap: fraction of time in contact, impacts per second, RMS"
         " radial velocity at impact, RMS and peak force, wear work rate (normal force times sliding"
@@ -171,52 +160,44 @@ def contact_statistics(config, model, records):
         " above which a case is flagged (dashed). Median over seeds and supports, bars from the"
         f" smallest to the largest value. {caveat}"
     ).rstrip()
-    items = {
-        panel: _of_gaps(config, records, gaps, variable, column)
-        for panel, variable, column, _ in STATISTICS
-    }
-    limit = config.record.stress_limit_Pa
-    items["stress"].append(Mark("limit", "y", limit, line="--", width=1.0, colour=BLACK))
-    if caveat:
-        words = f"centred to {imperfection:g} of the gap:\nhardly any sliding in plane"
-        items["wear"].append(Text(words, 0.03, 0.97, "xy", align=("left", "top")))
-    loads = Axis("load_rms_N", True)
-    panels = {
-        panel: Panel(loads, Axis(column, panel != "fraction"), items[panel], title, "no contact")
-        for panel, _, column, title in STATISTICS
-    }
+    panels = {}
+    for panel, variable, column, title in STATISTICS:
+        items: list[Item] = []
+        for gap, look in looks_of_gaps(config, statistics.gaps):
+            place = SEVERAL if panel == "stress" else EACH
+            look |= {"width": 0.9}
+            items += against_load(statistics, variable, gap, place, **look)
+            if panel == "force":
+                look |= {"line": ":", "hollow": True, "label": ""}
+                items += against_load(statistics, "peak_force", gap, place, **look)
+        if panel == "stress":
+            limit = config.record.stress_limit_Pa
+            items.append(Mark("limit", "y", limit, line="--", width=1.0, colour=BLACK))
+        if panel == "wear" and caveat:
+            words = f"centred to {imperfection:g} of the gap:\nhardly any sliding in plane"
+            items.append(Text(words, 0.03, 0.97, "xy", align=("left", "top")))
+        axes = Axis("load_rms_N", True), Axis(column, panel != "fraction")
+        panels[panel] = Panel(*axes, items, title, "no contact")
     names = list(panels)
     title, look = "Contact, wear and stress against load", {"share": "x", "legend": 3}
     rows = [names[:3], names[3:]]
     return Plot("contact_statistics", title, caption, panels, rows, (9.6, 6.0), **look)
 
 
-def _of_gaps(config, records, gaps, variable, column) -> list[Item]:
-    """Return a statistic of all gaps; with the RMS of the forces goes their peak, hollow."""
-    items: list[Item] = []
-    for gap, look in looks_of_gaps(config, gaps):
-        look |= {"width": 0.9}
-        for name, more in ((variable, {}), ("peak_force", {"line": ":", "hollow": True})):
-            if name == variable or variable == "rms_force":
-                rows = _rows(records, gap, name, column)
-                look |= more | ({"label": ""} if more else {})
-                items += over_seeds(rows, "load_rms_N", column, name, tags=("gap_m",), **look)
-    return items
+def against_load(
+    statistics: StudyStatistics, quantity: str, gap_m: float, place: str, **look: Any
+) -> list[Series]:
+    """Return the median of a quantity against load with its range, in a list, empty without values.
 
-
-def _rows(records, gap, variable, column):
-    """Return one row per case and support, or per case for the stress.
-
-    Zeros (no contact) are left out of logarithmic panels.
+    place: as of StudyStatistics.values. Zeros (no contact) are left out, but those of a share.
     """
-    rows = []
-    for case, dataset in records.items():
-        if case.gap_m != gap:
-            continue
-        values = dataset[variable].max() if variable == "stress_peak" else dataset[variable]
-        rows += [
-            {"gap_m": gap, "load_rms_N": case.load_rms_N, column: float(value)}
-            for value in np.ravel(values)
-            if value > 0.0 or variable == "contact_fraction"
-        ]
-    return rows
+    found = {}
+    for load in statistics.loads:
+        values = statistics.values(quantity, gap_m, load, place)
+        found[load] = [each for each in values if each > 0.0 or quantity == "contact_fraction"]
+    found = {load: values for load, values in found.items() if values}
+    if not found:
+        return []
+    middle, low, high = spread([*found.values()])
+    tags = {"gap_m": gap_m, "values": [len(values) for values in found.values()]}
+    return [Series(quantity, [*found], middle, tags, low, high, **look)]

@@ -115,27 +115,21 @@ def _law(support, gap):
         label += f"; tangent {number(np.sum(support.stiffness_N_per_m))} N/m past the gap"
     look = {"colour": BLUE, "width": 2.2, "label": label}
     items: list[Item] = [Series("contact force", displacement, force, tags, **look)]
-    items += _secants(support, gap, angle, ahead) if ahead > 0.0 else []
+    for far, colour, line in ((1.2, ORANGE, "--"), (1.5, RED, ":")) if ahead > 0.0 else ():
+        (top,) = static_force(support, gap, angle, np.array([far * ahead]))
+        label = f"secant at {far:g} gap: {number(top / (far * ahead))} N/m"
+        look = {"colour": colour, "line": line, "marker": "o", "label": label}
+        items.append(Series(f"secant at {far:g} gap", [0.0, far * ahead], [0.0, top], **look))
     for side in {side for side in (-behind, ahead) if np.isfinite(side)}:
-        text = "gap" if side == ahead else ""
-        items.append(Mark("gap", "x", side, text, colour=GREY, width=0.9, line=":"))
+        items.append(Mark("gap", "x", side, colour=GREY, width=0.9, line=":"))
+        if side == ahead:
+            items.append(Text("gap", side, 0.02, "y", shift=(3, 0), colour=GREY))
     span = np.ptp(force)
     axes = (
         Axis("radial_displacement_m"),
         Axis("contact_force_N", False, force.min() - 0.08 * span, force.max() + 0.5 * span),
     )
     return Panel(*axes, items, "force, tangent and secant stiffness", legend="upper left")
-
-
-def _secants(support, gap, angle, ahead):
-    """Return secants to two displacements beyond the stop that lies ahead."""
-    items = []
-    for reach, colour, line in ((1.2, ORANGE, "--"), (1.5, RED, ":")):
-        (top,) = static_force(support, gap, angle, np.array([reach * ahead]))
-        label = f"secant at {reach:g} gap: {number(top / (reach * ahead))} N/m"
-        look = {"colour": colour, "line": line, "marker": "o", "label": label}
-        items.append(Series(f"secant at {reach:g} gap", [0.0, reach * ahead], [0.0, top], **look))
-    return items
 
 
 def model_with_points(config, points):

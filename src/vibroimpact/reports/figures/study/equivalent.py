@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from vibroimpact.identify.method_names import method_name
 from vibroimpact.reports.figures.plot import Axis, Mark, Panel, Plot, Series, extent, in_rows
 from vibroimpact.reports.figures.style import (
     GAP_COLOURS,
@@ -31,8 +32,8 @@ MOST_COLUMNS = 4  # gaps side by side; more begin another block below
 
 def look_of(method: str) -> dict[str, Any]:
     """Return how the curve of a method looks, in every plot."""
-    label, colour, marker = METHODS.get(method, (method, GREY, "o"))
-    look = {"label": label, "colour": colour, "marker": marker}
+    colour, marker = METHODS.get(method, (GREY, "o"))
+    look = {"label": method_name(method), "colour": colour, "marker": marker}
     if method in PREDICTED:
         line = "-" if method == "secant" else "--"
         return look | {"line": line, "size": 3.5, "width": 1.0, "order": 1}
@@ -62,66 +63,48 @@ def figure_13_equivalent_support(config, model, rows, level="load_rms_N", study=
     )
     gaps = sorted({row["gap_m"] for row in rows}, reverse=True)
     loads = Axis(level, True, *extent([row["load_rms_N"] for row in rows], log=True))
+    across = -(-len(places) * len(gaps) // -(-len(places) * len(gaps) // MOST_COLUMNS))
     lowest = config.identification.stiffness_range_N_per_m[0]
+    level_of_k = Axis(COLUMNS["k"], True, 0.5 * lowest, HIGHEST_K)
     panels: dict[str, Panel] = {}
-    pairs = []
     for place in places:
+        limit, name = contact_stiffness(model, place[0]), "contact stiffness"
+        limit = Mark(name, "y", limit, label=name, colour=GREY, line="--", width=1.0)
+        own = {gap: _of(rows, gap, place) for gap in gaps}
+        beside = {gap: _of((study or {}).get(gap, ()), None, place) for gap in gaps}
         items = {
-            gap: _items(_of(rows, gap, place), _of((study or {}).get(gap, ()), None, place), level)
+            (gap, name): [*_study_curve(beside[gap], column), *_methods(own[gap], name, level)]
             for gap in gaps
+            for name, column in COLUMNS.items()
         }
-        damping = extent([value for found in items.values() for value in _values(found["c"])])
+        level_of_c = Axis(COLUMNS["c"], False, *extent(_values(items[gap, "c"] for gap in gaps)))
         for gap in gaps:
-            pair = tuple(f"{name}, {' in '.join(place)}, gap {gap:.5g} m" for name in "kc")
-            inner = bool(len(pairs) % _across(len(places) * len(gaps)))
-            why = _why_empty(_of(rows, gap, place))
-            panels[pair[0]] = Panel(
-                replace(loads, bare=True),
-                Axis(COLUMNS["k"], True, 0.5 * lowest, HIGHEST_K, bare=inner),
-                [*items[gap]["k"], _limit(model, place)],
-                _title(config, gap, place, len(places), len(gaps)),
-                why,
-            )
-            bottom = Axis(COLUMNS["c"], False, *damping, bare=inner and len(places) == 1)
-            panels[pair[1]] = Panel(loads, bottom, items[gap]["c"], note=why)
-            pairs.append(pair)
-    blocks = _in_blocks(pairs)
+            top, bottom = (f"{name}, {' in '.join(place)}, gap {gap:.5g} m" for name in "kc")
+            inner, why = bool(len(panels) // 2 % across), _why_empty(own[gap])
+            title = f"gap {gap_label(config, gap)}"
+            if len(places) > 1:
+                title = " in ".join(place) + (f", {gap * 1e3:.3g} mm" * (len(gaps) > 1))
+            axes = replace(loads, bare=True), replace(level_of_k, bare=inner)
+            panels[top] = Panel(*axes, [*items[gap, "k"], limit], title, why)
+            axes = loads, replace(level_of_c, bare=inner and len(places) == 1)
+            panels[bottom] = Panel(*axes, items[gap, "c"], note=why)
+    halves = (in_rows([*panels][half::2], across) for half in (0, 1))
+    blocks = [row for block in zip(*halves, strict=True) for row in block]
     return Plot(
         "figure_13_equivalent_support",
         "Equivalent stiffness and damping by every method",
         caption,
         panels,
         blocks,
-        (max(2.6 + 2.6 * len(blocks[0]), 6.4), 3.2 * len(blocks)),
-        legend=(2, 4, 5)[min(len(blocks[0]), 3) - 1],
+        (max(2.6 + 2.6 * across, 6.4), 3.2 * len(blocks)),
+        legend=(2, 4, 5)[min(across, 3) - 1],
     )
 
 
-def _title(config, gap, place, places, gaps):
-    if places > 1:
-        return f"{place[0]} in {place[1]}" + (f", {gap * 1e3:.3g} mm" * (gaps > 1))
-    return f"gap {gap_label(config, gap)}"
-
-
-def _limit(model, place):
-    """Return the Mark of the contact stiffness of a group of supports."""
-    name = "contact stiffness"
-    value = contact_stiffness(model, place[0])
-    return Mark(name, "y", value, label=name, colour=GREY, line="--", width=1.0)
-
-
-def _values(items):
-    """Return all values of series along y."""
-    parts = [(item.y, item.low, item.high) for item in items]
-    return [value for part in parts for array in part if array is not None for value in array]
-
-
-def _items(rows, beside, level):
-    """Return {k, c: items} of the rows of one place, over the curve of a study."""
-    return {
-        quantity: [*_study_curve(beside, column), *_methods(rows, quantity, level)]
-        for quantity, column in COLUMNS.items()
-    }
+def _values(found):
+    """Return all values of lists of series along y."""
+    parts = [part for items in found for item in items for part in (item.y, item.low, item.high)]
+    return [value for part in parts if part is not None for value in part]
 
 
 def _study_curve(rows, column):
@@ -139,36 +122,27 @@ def _study_curve(rows, column):
 def _methods(rows, quantity, level):
     """Return one quantity by every method: predictions as lines, others with their range."""
     column, found = COLUMNS[quantity], []
+    table = [{**row, level: row["load_rms_N"]} for row in rows]
     for method in DRAWN[quantity]:
-        chosen = [
-            {**row, level: row["load_rms_N"]}
-            for row in rows
-            if row["method"] == method and (quantity != "k" or row[column] > 0.0)
-        ]
-        if method not in PREDICTED:
+        chosen = [row for row in table if row["method"] == method]
+        chosen = [row for row in chosen if quantity != "k" or row[column] > 0.0]
+        if method in PREDICTED:
+            found += _predicted(chosen, level, method)
+        else:
             found += over_seeds(chosen, level, column, method, **look_of(method))
-            continue
-        place, value = medians(chosen, level, column)
-        found += [Series(method, place, value, **look_of(method))] if place.size else []
     return found
+
+
+def _predicted(rows, x, method, **look: Any):
+    """Return the line of k by a method that needs no response, in a list, empty without values."""
+    place, value = medians(rows, x, COLUMNS["k"])
+    return [Series(method, place, value, **(look_of(method) | look))] if place.size else []
 
 
 def _why_empty(rows):
     """Return why no compared method has a value among rows of the consistency table."""
     reasons = [row["reason"] for row in rows if row["method"] in COMPARED and row["reason"]]
     return f"No method resolves it. {reasons[0] if reasons else ''}".strip()
-
-
-def _across(count):
-    """Return the number of pairs of panels in a row."""
-    return -(-count // -(-count // MOST_COLUMNS))
-
-
-def _in_blocks(pairs):
-    """Return the rows of pairs of panels (top, bottom), side by side in blocks of two rows."""
-    across = _across(len(pairs))
-    halves = (in_rows([pair[half] for pair in pairs], across) for half in (0, 1))
-    return [row for block in zip(*halves, strict=True) for row in block]
 
 
 def _place(row):
@@ -196,7 +170,7 @@ def collapse(config, model, rows):
         " c (right) per support. The tube with impacts is homogeneous: its motion, measured in"
         " gaps, depends on load/gap only, so that the points of all gaps must fall on one curve."
         " Markers: median over seeds and over the methods"
-        f" {', '.join(METHODS[method][0] for method in COMPARED)} (the shape gives no c), bars from"
+        f" {', '.join(map(method_name, COMPARED))} (the shape gives no c), bars from"
         " the smallest to the largest value. Lines: statistical linearisation and the mean secant"
         " stiffness, of all gaps."
     )
@@ -208,10 +182,13 @@ def collapse(config, model, rows):
         own = [row for row in table if _place(row) == place]
         of = "" if len(places) == 1 else f", {' in '.join(place)}"
         why = _why_empty(own)
-        stiffness = [*_of_gaps(config, own, "k"), *_predictions(own)]
+        stiffness, x = _of_gaps(config, own, "k"), "load_over_gap_N_per_m"
+        for method in PREDICTED:
+            known = [row for row in own if row["method"] == method and row["k_N_per_m"] > 0.0]
+            stiffness += _predicted(known, x, method, marker="", width=1.2)
         damping = _of_gaps(config, own, "c")
         shown = [value for item in [*stiffness, *damping] for value in item.x]
-        loads = Axis("load_over_gap_N_per_m", True, *extent(shown, log=True))
+        loads = Axis(x, True, *extent(shown, log=True))
         level = Axis(COLUMNS["k"], True, 0.5 * lowest, 2.5 * contact_stiffness(model))
         name, zero = " in ".join(place), Mark("", "y", 0.0, colour=GREY, width=0.8)
         title = f"damping{of}" if of else "damping on top of the modal damping"
@@ -253,14 +230,3 @@ def look_of_gap(index: int) -> dict[str, Any]:
     """Return colour and marker of the curve of a gap."""
     colours, markers = GAP_COLOURS, GAP_MARKERS
     return {"colour": colours[index % len(colours)], "marker": markers[index % len(markers)]}
-
-
-def _predictions(rows):
-    """Return k by the methods that need no response."""
-    found = []
-    for method in PREDICTED:
-        known = [row for row in rows if row["method"] == method and row["k_N_per_m"] > 0.0]
-        place, value = medians(known, "load_over_gap_N_per_m", COLUMNS["k"])
-        look = look_of(method) | {"marker": "", "width": 1.2}
-        found += [Series(method, place, value, **look)] if place.size else []
-    return found

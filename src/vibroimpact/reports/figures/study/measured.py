@@ -52,40 +52,27 @@ def study_beside(config, folder):
 
 def measured_figures(found, beside=None):
     """Return the Plots of a MeasuredSupports; beside: StudyBeside or None."""
-    config, model = found.config, found.model
-    responses = gather(config, model, found.spectra.values())
-    gap = shown_gap(config)
-    return [
-        figure_13_equivalent_support(
-            config, model, found.rows, found.levels, _study_rows(found, beside), _caption(beside)
-        ),
-        figure_05_measured(
-            config,
-            model,
-            responses,
-            _supports(found, gap),
-            _simulated(found, beside, gap),
-            found.levels,
-        ),
-        figure_06_levels(config, model, responses, found.levels),
-    ]
-
-
-def _caption(beside):
-    """Return the caption of figure 13."""
+    config, model, level = found.config, found.model, found.levels
+    responses, gap = gather(config, model, found.spectra.values()), shown_gap(config)
+    beside = beside if level == "load_rms_N" else None
     over = (
-        ""
-        if beside is None
-        else " Grey: the study of the same tube, median of its compared methods and their range"
+        " Grey: the study of the same tube, median of its compared methods and their range"
         " over seeds, at the same load over gap."
     )
-    return (
+    caption = (
         "Equivalent bilateral support of the measured tube by each method against load: stiffness k"
         " (top) and damping c on top of the modal damping (bottom), per support; median over"
         " records, bars from the smallest to the largest record. Unresolved values are"
-        f" left out. The shape carries no damping.{over} Dashed: the contact stiffness of the"
-        " model, the upper limit."
+        f" left out. The shape carries no damping.{over if beside else ''} Dashed: the contact"
+        " stiffness of the model, the upper limit."
     )
+    study = _study_rows(found, beside) if beside else None
+    simulated = _simulated(found, beside, gap) if beside else None
+    return [
+        figure_13_equivalent_support(config, model, found.rows, level, study, caption),
+        figure_05_measured(config, model, responses, _supports(found, gap), simulated, level),
+        figure_06_levels(config, model, responses, level),
+    ]
 
 
 def _supports(found, gap):
@@ -112,8 +99,6 @@ def _study_rows(found, beside):
 
     If a model has effects with a scale of their own, only the same gap is comparable.
     """
-    if beside is None or found.levels != "load_rms_N":
-        return None
     gaps = sorted({row["gap_m"] for row in beside.rows})
     fixed = bool(effects_with_a_scale(found.model))
     rows = {}
@@ -131,8 +116,6 @@ def _study_rows(found, beside):
 
 def _simulated(found, beside, gap):
     """Return the Responses of the study at the gap and sensor of figure 5, None without these."""
-    if beside is None or found.levels != "load_rms_N":
-        return None
     same = [each for each in beside.config.grid.gap_m if abs(each / gap - 1.0) < SAME_GAP]
     point = beside.config.identification.response_point
     at = found.model.sensor_names.index(

@@ -41,10 +41,20 @@ def figure_05_overlay(config, model, responses, campaign):
     at = model.sensor_names.index(sensor)
     place = model.sensor_positions[at], model.sensor_directions[at]
     channel = channel_at(campaign, *place, "acceleration")
-    panels = {}
+    highest_Hz, rate = responses.frequency[-1], float(campaign.attrs["sampling_frequency"])
+    band, panels = shown_band(model, highest_Hz), {}
     for record in records:
-        measured = campaign, record, channel
-        panels[f"record {record}"] = _campaign_panel(config, model, responses, measured, sensor)
+        load = float(campaign["load_rms"].values[record])
+        signal = channel_signal(campaign, record, channel)
+        spectra = segment_spectra(signal, rate, config.spectra, highest_Hz)
+        statistics = [values[0] for values in psd_statistics(spectra.values)]
+        tags = {"load_rms_N": load}
+        items = _spectrum(band, spectra.frequency, statistics, "campaign", tags, GREEN)
+        nearest, simulated, nearby = _nearest(model, responses, sensor, load)
+        same = np.isclose(load, nearest, rtol=0.01)
+        name = f"load {load:.3g} N RMS" + ("" if same else f"; simulation {nearest:.3g} N RMS")
+        items += nearby
+        panels[f"record {record}"] = _panel(model, responses.frequency, simulated, items, name)
     return _in_pairs(f"{title} over simulation", caption, panels)
 
 
@@ -55,40 +65,31 @@ def _in_pairs(title, caption, panels):
     return Plot("figure_05_overlay", title, caption, panels, rows, size, share="x", legend=3)
 
 
-def _campaign_panel(config, model, responses, measured, sensor):
-    """Return the Panel of one record, (campaign, record, channel), over the nearest load."""
-    campaign, record, channel = measured
-    frequency = responses.frequency
+def _panel(model, frequency, statistics, items, title):
+    """Return the Panel of items and of the modes of the driven plane, free and in full contact.
+
+    Its axes show the band of (mean, smallest, largest) PSDs.
+    """
     band = shown_band(model, frequency[-1])
-    load = float(campaign["load_rms"].values[record])
-    rate = float(campaign.attrs["sampling_frequency"])
-    signal = channel_signal(campaign, record, channel)
-    spectra = segment_spectra(signal, rate, config.spectra, frequency[-1])
-    statistics = [values[0] for values in psd_statistics(spectra.values)]
-    nearest, simulated = _nearest(responses, sensor, load)
-    items = [
-        *_spectrum(band, spectra.frequency, statistics, "campaign", {"load_rms_N": load}, GREEN),
-        *_spectrum(band, frequency, simulated, "simulation", {"load_rms_N": nearest}, BLUE),
-        *_modes(model, band),
-    ]
-    same = np.isclose(load, nearest, rtol=0.01)
-    title = f"load {load:.3g} N RMS" + ("" if same else f"; simulation {nearest:.3g} N RMS")
-    return Panel(*_axes(band, frequency, simulated), items, title)
-
-
-def _axes(band, frequency, statistics):
-    """Return the axes that show the band of (mean, smallest, largest) PSDs."""
+    for (name, values), colour in zip(limit_modes(model, band), (BLACK, RED), strict=True):
+        look: dict[str, Any] = {"colour": colour, "line": "--", "width": 0.9, "order": 0}
+        for index, value in enumerate(values):
+            items.append(Mark(name, "x", value, label="" if index else name, **look))
     kept = inside(frequency, band)
     lowest, highest = np.percentile(statistics[0][kept], 1.0), statistics[2][kept].max()
     level = Axis("psd_m2_per_s4_per_Hz", True, 0.01 * lowest, 3.0 * highest)
-    return Axis("frequency_Hz", False, *band), level
+    return Panel(Axis("frequency_Hz", False, *band), level, items, title)
 
 
-def _nearest(responses, sensor, load):
-    """Return (nearest load, its mean, smallest and largest PSD of acceleration)."""
-    nearest = int(np.argmin(np.abs(np.log(responses.load / load))))
-    psds = [responses.psd["acceleration", sensor, name][nearest] for name in STATISTICS]
-    return responses.load[nearest], psds
+def _nearest(model, responses, sensor, load):
+    """Return (nearest load of a simulation, its mean, smallest and largest PSD of acceleration, the
+    items that draw them).
+    """
+    at = int(np.argmin(np.abs(np.log(responses.load / load))))
+    nearest, frequency = responses.load[at], responses.frequency
+    psds = [responses.psd["acceleration", sensor, name][at] for name in STATISTICS]
+    band, tags = shown_band(model, frequency[-1]), {"load_rms_N": nearest}
+    return nearest, psds, _spectrum(band, frequency, psds, "simulation", tags, BLUE)
 
 
 def _shown_records(campaign, gap_m):
@@ -122,16 +123,6 @@ def _spectrum(band, frequency, statistics, curve, tags, colour) -> list[Item]:
     return items
 
 
-def _modes(model, band) -> list[Item]:
-    """Return the Marks of the modes of the driven plane, free and in full contact."""
-    items: list[Item] = []
-    for (name, values), colour in zip(limit_modes(model, band), (BLACK, RED), strict=True):
-        look: dict[str, Any] = {"colour": colour, "line": "--", "width": 0.9, "order": 0}
-        for index, value in enumerate(values):
-            items.append(Mark(name, "x", value, label="" if index else name, **look))
-    return items
-
-
 def figure_05_measured(config, model, measured, supports, simulated=None, level="load_rms_N"):
     """Return the Plot of measured spectra over those of the equivalent linear tube, and of a
     study's simulation if there is one, a panel per load.
@@ -143,47 +134,30 @@ def figure_05_measured(config, model, measured, supports, simulated=None, level=
     """
     sensor = driven_sensor(config, config.identification.response_point)
     band = shown_band(model, measured.frequency[-1])
-    fitted = config.identification.broadband.band_Hz
+    fitted, unit = config.identification.broadband.band_Hz, label_of(level).partition(" (")
     panels = {}
     for index in spread_evenly(range(measured.load.size), LEVELS):
         load = float(measured.load[index])
         psds = [measured.psd["acceleration", sensor, name][index] for name in STATISTICS]
         items = _spectrum(band, measured.frequency, psds, "measured", {level: load}, GREEN)
-        items += _simulated(model, simulated, load) if simulated is not None else []
+        if simulated is not None:
+            (name,) = {sensor for _, sensor, _ in simulated.psd}
+            items += _nearest(model, simulated, name, load)[2]
         if load in supports:
             mean = measured.frequency, psds[0]
             items.append(_equivalent_line(model, sensor, mean, fitted, supports[load]))
-        title = f"{label_of(level).partition(' (')[0].lower()} {_in_unit(level, load)}"
-        axes = _axes(band, measured.frequency, psds)
-        panels[f"level {index}"] = Panel(*axes, [*items, *_modes(model, band)], title)
-    caption = _measured_caption(config, sensor, measured.gap_m, simulated is not None)
-    return _in_pairs("Measured spectra over the equivalent linear tube", caption, panels)
-
-
-def _measured_caption(config, sensor, gap_m, simulated):
-    """Return the caption of measured spectra; simulated: whether a study is drawn too."""
+        title = f"{unit[0].lower()} {shown(level, load):.3g} {unit[2].rstrip(')')}"
+        panels[f"level {index}"] = _panel(model, measured.frequency, psds, items, title)
     beside = " Blue: simulation of the study at the nearest load." if simulated else ""
-    return (
+    caption = (
         f"PSD of acceleration at {sensor.rpartition('.')[0]}, gap"
-        f" {gap_label(config, gap_m)}: measured (green;"
+        f" {gap_label(config, measured.gap_m)}: measured (green;"
         " thick: mean over segments and records, dotted: smallest and largest segment). Black: the"
         " linear tube on its equivalent support in the band of the broadband comparison, its level"
         f" fitted.{beside} Vertical: modes of the"
         " driven plane of the tube, free (black, dashed) and held at the supports (red, dashed)."
     )
-
-
-def _in_unit(level, value):
-    """Return a level with the unit of its axis."""
-    return f"{shown(level, value):.3g} {label_of(level).partition(' (')[2].rstrip(')')}"
-
-
-def _simulated(model, simulated, load):
-    """Return the spectra of the Responses of a study at the nearest load."""
-    (name,) = {sensor for _, sensor, _ in simulated.psd}
-    nearest, psds = _nearest(simulated, name, load)
-    band = shown_band(model, simulated.frequency[-1])
-    return _spectrum(band, simulated.frequency, psds, "simulation", {"load_rms_N": nearest}, BLUE)
+    return _in_pairs("Measured spectra over the equivalent linear tube", caption, panels)
 
 
 def _equivalent_line(model, sensor, measured, band, support):

@@ -8,7 +8,7 @@ import numpy as np
 
 from vibroimpact.identify.linear.poles import first_pole, frequency_of
 from vibroimpact.identify.peak import LEVELS, level_edges
-from vibroimpact.reports.figures.plot import Axis, Mark, Panel, Plot, Series
+from vibroimpact.reports.figures.plot import Axis, Mark, Panel, Plot, Series, Text
 from vibroimpact.reports.figures.style import BLACK, GREY, gap_label, ordered_colours
 
 from .cases_of_gap import first_seed, spread_loads
@@ -71,7 +71,9 @@ def _against_load(model, rows, column, table_column):
     frequency = column == "peak_frequency_Hz"
     for k, name in ((0.0, "free"), (contact_stiffness(model), "in full contact")):
         value = frequency_of(first_pole(model, k, 0.0))[0 if frequency else 1]
-        items.append(Mark(name, "y", value, name, colour=GREY, line=":", width=1.0))
+        items.append(Mark(name, "y", value, colour=GREY, line=":", width=1.0))
+        look = {"shift": (-2, 2), "align": ("right", "bottom"), "colour": GREY}
+        items.append(Text(name, 1.0, value, "x", **look))
     loads = Axis("load_rms_N", True, bare=frequency)
     title, legend = ("frequency", "upper left") if frequency else ("damping ratio", "")
     return Panel(loads, Axis(column), items, title, legend=legend)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.excitation.force_files import read_force
-from vibroimpact.excitation.line_force_spectrum import line_force_psd
+from vibroimpact.excitation.line_force_spectrum import line_force_psd, line_force_rms
 from vibroimpact.geometry.sections import outer_width
 from vibroimpact.identify.linear.responses import psd_family
 from vibroimpact.identify.spectra.welch import driven_axis, psd_statistics, segment_spectra
@@ -15,10 +15,18 @@ from vibroimpact.identify.spectra.welch import driven_axis, psd_statistics, segm
 from .cases_of_gap import paths_of_gap, shown_gap
 from .linear_limits import shown_band
 
-BAND_POINTS = 4000  # of the integral over the band of a force
 QUANTITIES = ("displacement", "acceleration")
 # Of segments, and how those of several seeds are put together.
 STATISTICS = {"mean": np.add, "min": np.minimum, "max": np.maximum}
+
+
+def pooled(known, psds):
+    """Return {statistic: PSD} of records together; the mean is their sum. known: of those before,
+    None for none. psds: of one more.
+    """
+    if known is None:
+        return psds
+    return {name: combine(known[name], psds[name]) for name, combine in STATISTICS.items()}
 
 
 @dataclass(frozen=True)
@@ -64,19 +72,17 @@ def gather(config, model, spectra):
         if not np.isclose(dataset.attrs["gap_m"], gap_m, rtol=1e-9):
             continue
         load = float(dataset.attrs["load_rms_N"])
-        frequency = dataset["frequency"].values
-        kept = frequency <= highest_Hz
-        frequency = frequency[kept]
         counts[load] = counts.get(load, 0) + 1
+        kept = dataset["frequency"].values <= highest_Hz
+        frequency = dataset["frequency"].values[kept]
+        sensors = [str(name) for name in dataset["sensor"].values]
         for quantity in QUANTITIES:
-            for statistic, combine in STATISTICS.items():
-                psds = dataset[f"psd_{quantity}_{statistic}"].values
-                for index, sensor in enumerate(map(str, dataset["sensor"].values)):
-                    if not sensor.endswith("." + driven):
-                        continue
-                    values = psds[index, kept].astype(float)
-                    known = sums.setdefault((quantity, sensor, statistic), {})
-                    known[load] = combine(known[load], values) if load in known else values
+            whole = {name: dataset[f"psd_{quantity}_{name}"].values for name in STATISTICS}
+            for index, sensor in enumerate(sensors):
+                if sensor.endswith("." + driven):
+                    psds = {name: psd[index, kept].astype(float) for name, psd in whole.items()}
+                    by_load = sums.setdefault((quantity, sensor), {})
+                    by_load[load] = pooled(by_load.get(load), psds)
     if not counts:
         raise ValueError(
             f"no spectra of the gap {gap_m} m: the figures need the cases of the configuration's"
@@ -84,24 +90,26 @@ def gather(config, model, spectra):
         )
     loads = sorted(counts)
     psd = {
-        key: np.array([by_load[load] / (counts[load] if key[2] == "mean" else 1) for load in loads])
+        (*key, name): np.array(
+            [by_load[load][name] / (counts[load] if name == "mean" else 1) for load in loads]
+        )
         for key, by_load in sums.items()
+        for name in STATISTICS
     }
     return Responses(gap_m, np.array(loads), frequency, psd, share)
 
 
 def _in_plane_share(dataset, driven):
     """Return one row per point: mean square of the other directions over the driven one, in dB."""
-    names = [str(name) for name in dataset["sensor"].values]
     powers = dataset["psd_displacement_mean"].values.sum(axis=-1, dtype=float)
-    power, rows = dict(zip(names, powers, strict=True)), []
-    for point in dict.fromkeys(name.rpartition(".")[0] for name in power):
-        across = power.get(f"{point}.{driven}", 0.0)
-        along = sum(
-            value
-            for name, value in power.items()
-            if name.rpartition(".")[0] == point and not name.endswith("." + driven)
-        )
+    points: dict[str, dict[str, float]] = {}
+    for name, power in zip(map(str, dataset["sensor"].values), powers, strict=True):
+        point, _, direction = name.rpartition(".")
+        points.setdefault(point, {})[direction] = power
+    rows = []
+    for point, power in points.items():
+        across = power.pop(driven, 0.0)
+        along = sum(power.values())
         if across > 0.0 and along > 0.0:
             rows.append(
                 {
@@ -126,9 +134,8 @@ def unit_force_psd(config, frequency):
         return np.where(inside(frequency, (low, high)), 1.0 / (high - low), 0.0)
     if excitation.kind == "turbulence":
         diameter = outer_width(config.structure.section)
-        psd = line_force_psd(excitation, diameter, frequency)
-        fine = np.linspace(*excitation.band_Hz, BAND_POINTS)
-        return psd / np.trapezoid(line_force_psd(excitation, diameter, fine), fine)
+        mean_square = line_force_rms(excitation, diameter) ** 2
+        return line_force_psd(excitation, diameter, frequency) / mean_square
     force = read_force(excitation.file, excitation.variable, excitation.sampling_frequency_Hz)
     measured = segment_spectra(force.values, force.rate, config.spectra)
     mean = psd_statistics(measured.values)[0][0] / np.mean(np.square(force.values))

@@ -36,13 +36,9 @@ def figure_06_levels(config, model, responses, level="load_rms_N"):
 
     level: column of the loads; response_rms_m if they are the RMS of the response.
     """
-    word, column = {
-        "load_rms_N": ("load", "psd_dB"),
-        "response_rms_m": ("response", "psd_per_response2_dB"),
-    }[level]
-    points = list(
-        dict.fromkeys((config.identification.response_point, config.identification.broadband.point))
-    )
+    of_load, asked = level == "load_rms_N", config.identification
+    word, column = ("load", "psd_dB") if of_load else ("response", "psd_per_response2_dB")
+    points = dict.fromkeys((asked.response_point, asked.broadband.point))
     caption = (
         f"PSD of displacement divided by the square of the {word}, over frequency and {word},"
         f" {_gap_words(config, responses)}, mean over segments and seeds. If the tube is linear,"
@@ -57,18 +53,15 @@ def figure_06_levels(config, model, responses, level="load_rms_N"):
     ends = top - DYNAMIC_RANGE_DB, top
     curve = f"mean PSD / {word}²"
     panels = {
-        point: Panel(
-            Axis("frequency_Hz"),
-            Axis(level, True),
-            [
-                Map(curve, spectra[point][0], responses.load, values, column, *ends),
-                *_modes(model, band),
-            ],
+        point: _map_panel(
+            level,
+            Map(curve, spectra[point][0], responses.load, values, column, *ends),
+            _modes(model, band),
             driven_sensor(config, point),
         )
         for point, values in levels.items()
     }
-    title = f"Peaks of the response against {'load' if word == 'load' else 'its level'}"
+    title = f"Peaks of the response against {'load' if of_load else 'its level'}"
     bars = [ColourBar(column, *ends, ends="min")]
     look = {"size": (7.6, 4.4), "share": "y", "legend": 2, "colour_bars": bars}
     return Plot("figure_06_levels", title, caption, panels, **look)
@@ -138,19 +131,11 @@ def figure_08_load_and_stiffness(config, model, responses):
     linear = _decibels(linear_psds(config, model, sensor, stiffness, coarse))
     ends, curve = (measured.max() - DYNAMIC_RANGE_DB, measured.max()), "PSD / load²"
     modes = _modes(model, band)
+    of_load = Map(curve, frequency, loads, measured, "psd_dB", *ends)
+    of_k, k = Map(curve, coarse, stiffness, linear, "psd_dB", *ends), "support_stiffness_N_per_m"
     panels = {
-        "load": Panel(
-            Axis("frequency_Hz"),
-            Axis("load_rms_N", True),
-            [Map(curve, frequency, loads, measured, "psd_dB", *ends), *modes],
-            "non-linear, against the load",
-        ),
-        "stiffness": Panel(
-            Axis("frequency_Hz"),
-            Axis("support_stiffness_N_per_m", True),
-            [Map(curve, coarse, stiffness, linear, "psd_dB", *ends), *modes],
-            "linear, against the bilateral stiffness",
-        ),
+        "load": _map_panel("load_rms_N", of_load, modes, "non-linear, against the load"),
+        "stiffness": _map_panel(k, of_k, modes, "linear, against the bilateral stiffness"),
     }
     title, bars = "Load with contact, stiffness without", [ColourBar("psd_dB", *ends, ends="both")]
     look = {"size": (7.6, 4.4), "legend": 2, "colour_bars": bars}
@@ -185,6 +170,11 @@ def in_plane_share(config, responses):
     return Plot("in_plane_share", "Motion across the driven direction", caption, {"main": panel})
 
 
+def _map_panel(column, item, modes, title):
+    """Return the Panel of a Map over frequency and a column, with the modes of the tube."""
+    return Panel(Axis("frequency_Hz"), Axis(column, True), [item, *modes], title)
+
+
 def _gap_words(config, responses):
     return f"gap {gap_label(config, responses.gap_m)}"
 
@@ -203,11 +193,9 @@ def _decibels(values):
 
 def _modes(model, band):
     """Return the modes of the driven plane: free below a map, in full contact above it."""
-    looks = (0.012, "^", "white"), (0.988, "v", ORANGE)
-    found = []
-    for (name, values), (height, marker, colour) in zip(
-        limit_modes(model, band), looks, strict=True
-    ):
-        look = {"label": name, "marker": marker, "colour": colour, "size": 7, "order": 6}
-        found.append(Signs(name, values, height, **look))
-    return found
+    (free, low), (held, high) = limit_modes(model, band)
+    look: dict[str, Any] = {"size": 7, "order": 6}
+    return [
+        Signs(free, low, 0.012, label=free, marker="^", colour="white", **look),
+        Signs(held, high, 0.988, label=held, marker="v", colour=ORANGE, **look),
+    ]

@@ -77,20 +77,32 @@ def support_places(model: Any) -> np.ndarray:
     return model.line_arc_length[np.array(nearest, dtype=int)]
 
 
-def linear_shape(model: Any, k: float) -> np.ndarray:
-    """Return the first mode (line_point,) of the linear tube, its largest component +1.
+def linear_limits(model: Any, **look: Any) -> list[Series]:
+    """Return the first mode of the linear tube, free and in full contact, its largest value +1."""
+    return [
+        Series(
+            name,
+            model.line_arc_length,
+            _unit(first_mode_shape(model, k)),
+            label=name,
+            line=line,
+            width=1.0,
+            **look,
+        )
+        for name, k, line in (
+            ("linear, free", 0.0, "--"),
+            ("linear, in full contact", contact_stiffness(model), "-"),
+        )
+    ]
 
-    k: N/m per support.
-    """
-    return _unit(first_mode_shape(model, k))
 
-
-def _supports(model):
-    """Return the supports as shaded ranges with their names."""
-    items, few = [], len(model.support_names) <= 3
+def supports(model: Any) -> list[Item]:
+    """Return the supports as shaded ranges, with their names in a printed figure."""
+    items: list[Item] = []
+    few = len(model.support_names) <= 3
     for name, place in zip(model.support_names, support_places(model), strict=True):
         items.append(Span("x", place - HALF_SUPPORT_m, place + HALF_SUPPORT_m, PALE))
-        look = {"of_panel": "y", "colour": GREY, "rotation": 0.0 if few else 90.0}
+        look: dict[str, Any] = {"of_panel": "y", "colour": GREY, "rotation": 0.0 if few else 90.0}
         look |= {"align": ("left" if few else "center", "top"), "shift": (4 * few, 0)}
         items.append(Text(f"support {name}" if few else name, place, 0.98, **look))
     return items
@@ -99,11 +111,7 @@ def _supports(model):
 def _shapes(model, found, loads):
     """Return the Panel of the shapes of some loads, the linear tube's limits and the supports."""
     place = model.line_arc_length
-    items: list[Item] = _supports(model)
-    stiff = contact_stiffness(model)
-    for k, name, line in ((0.0, "linear, free", "--"), (stiff, "linear, in full contact", "-")):
-        look = {"colour": BLACK, "line": line, "width": 1.0, "order": 5, "label": name}
-        items.append(Series(name, place, linear_shape(model, k), **look))
+    items: list[Item] = [*supports(model), *linear_limits(model, colour=BLACK, order=5)]
     colours = ordered_colours(loads or [1.0])
     for load in loads:
         shapes = [

@@ -53,7 +53,7 @@ def figure_09_stabilisation(config, curves, spectra, rows):
         taken, _ = pole_taken(fitted)
         low, high = (max(band[0], taken / NEAR), min(band[1], taken * NEAR))
         near = (low, high) if np.isfinite(taken) else band
-        panels[f"{load:g} N"] = chart_panel(fitted, spectrum, sensor, near, tags=True)
+        panels[f"{load:g} N"] = chart_panel(fitted, spectrum, sensor, near)
     title = "LSCF poles of the main peak, by model order"
     return Plot("figure_09_stabilisation", title, caption, panels, share="y", legend=4)
 
@@ -91,11 +91,8 @@ def _orders_of_pole(fitted):
     return np.unique(fitted["chart_order"].values[own]).size
 
 
-def chart_panel(fitted, spectrum, sensor, band_Hz, tags=False):
-    """Return the Panel of the poles of a case inside a band over the PSD of a sensor.
-
-    tags: whether the damping ratio of each pole is in the CSV.
-    """
+def chart_panel(fitted, spectrum, sensor, band_Hz):
+    """Return the Panel of the poles of a case inside a band over the PSD of a sensor."""
     frequency = spectrum["frequency"].values
     kept = inside(frequency, band_Hz)
     psd = spectrum["psd_displacement_mean"].sel(sensor=sensor).values[kept]
@@ -118,10 +115,9 @@ def chart_panel(fitted, spectrum, sensor, band_Hz, tags=False):
             f"{name}: {f:.2f} Hz, damping ratio {100 * z:.2f} %, order {n:g}"
             for f, z, n in zip(place[kept], ratio[kept], order[kept], strict=True)
         ]
-        more = {"damping_ratio": ratio[kept]} if tags else {}
-        items.append(
-            Series(name, place[kept], order[kept], more, line="", label=name, hover=hover, **look)
-        )
+        tags = {"damping_ratio": ratio[kept]}
+        look = {**look, "line": "", "label": name, "hover": hover}
+        items.append(Series(name, place[kept], order[kept], tags, **look))
     taken, own = pole_taken(fitted)
     if own:
         items.append(Mark("pole taken", "x", taken, colour=RED, width=0.8))

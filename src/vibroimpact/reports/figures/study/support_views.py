@@ -84,7 +84,14 @@ def support_side(sheet, axes, config, structure, gap, scale):
     _box(axes, (-radius, -2 * half), 2 * radius, 4 * half, **look)
     axes.axvline(0.0, color=GREY, linewidth=0.8, dashes=(8, 2, 1, 2))
     if support:
-        _contact_points(sheet, axes, support, structure, half)
+        places = structure.contact.arc_length[structure.contact.support == 0]
+        x, y = ("across_m", np.zeros(places.size)), ("along_m", places - places.mean())
+        dots = {"color": RED, "linestyle": "none", "marker": "o", "zorder": 5}
+        sheet.line(axes, x, y, "contact points", **dots)
+        points = f"{support.points} contact point{'s' * (support.points > 1)}"
+        text = f"{points},\n{number(np.sum(support.stiffness_N_per_m))} N/m in all"
+        place = {"ha": "center", "va": "bottom", "fontsize": 8.5}
+        axes.text(0, shown("along_m", 2.05 * half), text, **place)
     axes.set_xlim(-1e3 * reach, 1e3 * reach)
     axes.set_ylim(-1.6e3 * half, 3.4e3 * half)
 
@@ -93,19 +100,6 @@ def _box(axes, corner, width, height, **look):
     """Draw a rectangle from its lower left corner, lengths in m, on axes in mm."""
     left, bottom = corner
     axes.add_patch(Rectangle((left * 1e3, bottom * 1e3), width * 1e3, height * 1e3, **look))
-
-
-def _contact_points(sheet, axes, support, structure, half):
-    """Draw the contact points of the first support, and write how many there are."""
-    places = structure.contact.arc_length[structure.contact.support == 0]
-    along = places - places.mean()
-    x, y = ("across_m", np.zeros(along.size)), ("along_m", along)
-    dots = {"color": RED, "linestyle": "none", "marker": "o", "zorder": 5}
-    sheet.line(axes, x, y, "contact points", **dots)
-    points = f"{support.points} contact point{'s' * (support.points > 1)}"
-    text = f"{points},\n{number(np.sum(support.stiffness_N_per_m))} N/m in all"
-    place = {"ha": "center", "va": "bottom", "fontsize": 8.5}
-    axes.text(0, shown("along_m", 2.05 * half), text, **place)
 
 
 def support_section(sheet, axes, config, support, gap, scale):
@@ -124,8 +118,18 @@ def support_section(sheet, axes, config, support, gap, scale):
         depth = getattr(support.profile, "depth_m", 0.0)
         reach = 1.35 * (radius + scale * (max(own, 0.0) + depth + np.hypot(*offset)))
         hole = hole_outline(support.profile, own, radius, scale, 1.05 * reach) + scale * offset
-        _hole(sheet, axes, hole, reach)
-        _gap_arrows(axes, angle, radius, radius + scale * own, scale * offset)
+        # a side without stop is open to the edge of the picture
+        _box(axes, (-reach, -reach), 2 * reach, 2 * reach, **PLATE, edgecolor="none")
+        axes.add_patch(Polygon(hole * 1e3, facecolor="white", edgecolor="none"))
+        x, y = ("section_e1_m", hole[:, 0]), ("section_e2_m", hole[:, 1])
+        sheet.line(axes, x, y, "obstacle", color=RED, linewidth=1.2)
+        # two arrows that meet in the gap, in the direction of the first stop or land
+        way, wall = np.array([np.cos(angle), np.sin(angle)]), radius + scale * own
+        arrow = {"arrowstyle": "->", "linewidth": 1.6, "color": ORANGE}
+        ends = (0.25 * radius + wall, wall, scale * offset), (0.75 * radius, radius, 0.0 * offset)
+        for start, end, shift in ends:
+            tip, tail = (end * way + shift) * 1e3, (start * way + shift) * 1e3
+            axes.annotate("", tip, tail, arrowprops=arrow)
     turn = np.linspace(0.0, 2.0 * np.pi, 121)
     for size, colour in ((radius, PALE), (inside, "white")):
         axes.add_patch(Circle((0, 0), size * 1e3, facecolor=colour, edgecolor="none"))
@@ -141,20 +145,3 @@ def support_section(sheet, axes, config, support, gap, scale):
     axes.set_aspect("equal")
     axes.set_xlim(-1e3 * reach, 1e3 * reach)
     axes.set_ylim(-1e3 * reach, 1e3 * reach)
-
-
-def _hole(sheet, axes, hole, reach):
-    """Draw the plate with its hole; a side without stop is open to the edge of the picture."""
-    _box(axes, (-reach, -reach), 2 * reach, 2 * reach, **PLATE, edgecolor="none")
-    axes.add_patch(Polygon(hole * 1e3, facecolor="white", edgecolor="none"))
-    x, y = ("section_e1_m", hole[:, 0]), ("section_e2_m", hole[:, 1])
-    sheet.line(axes, x, y, "obstacle", color=RED, linewidth=1.2)
-
-
-def _gap_arrows(axes, angle, radius, wall, offset):
-    """Draw two arrows that meet in the gap, in the direction of the first stop or land."""
-    way, arrow = np.array([np.cos(angle), np.sin(angle)]), {"arrowstyle": "->", "linewidth": 1.6}
-    ends = ((0.25 * radius + wall, wall, offset), (0.75 * radius, radius, 0.0 * offset))
-    for start, end, shift in ends:
-        tip, tail = (end * way + shift) * 1e3, (start * way + shift) * 1e3
-        axes.annotate("", tip, tail, arrowprops=arrow | {"color": ORANGE})

@@ -46,6 +46,9 @@ def figure_01_layout(config, structure):
     section = config.structure.section
     gap = max(config.grid.gap_m)
     scale, holes = drawn_scale(config, gap), distinct_holes(config)
+    hidden = len(holes) - SHOWN_HOLES
+    left_out = f" {hidden} more supports with other holes are not drawn in section."
+    left_out = left_out if hidden > 0 else ""
     caption = (
         f"Layout of the tube ({_section_in_words(section)}). Left: front view to scale with its"
         " supports"
@@ -55,8 +58,7 @@ def figure_01_layout(config, structure):
         " the side, and in section with the profile of its hole; the tube can move by the gap,"
         f" {gap_label(config, gap)} here if a support has none of its own,"
         f" before it touches; gaps are drawn {scale:g} times too large."
-        f"{_holes_left_out(holes)} The tube is the one of the configuration, not the drawing of a"
-        " rig."
+        f"{left_out} The tube is the one of the configuration, not the drawing of a rig."
     )
     panels = ["section"] if len(holes) < 2 else [f"section {n + 1}" for n in range(len(holes))]
     panels = panels[:SHOWN_HOLES]
@@ -95,13 +97,6 @@ def _section_in_words(section):
         return f"a bar of {first * 1e3:g} mm x {second * 1e3:g} mm, drawn by its smaller width"
     drawn = "a solid rod" if kind == "round" else "of general section, drawn by its smaller width"
     return f"{drawn}, {outer_width(section) * 1e3:g} mm"
-
-
-def _holes_left_out(holes):
-    """Return a sentence on supports whose holes are not drawn."""
-    if len(holes) <= SHOWN_HOLES:
-        return ""
-    return f" {len(holes) - SHOWN_HOLES} more supports with other holes are not drawn in section."
 
 
 def _front_view(sheet, axes, config, structure):
@@ -219,18 +214,30 @@ def _draw_points(sheet, axes, config, structure, view):
 
     Names at the same place share one label.
     """
+    driven, sensors = getattr(config.excitation, "point", None), config.record.sensors
     labels = []
     dot = {"color": BLUE, "marker": "o", "markersize": 6, "linestyle": "none", "zorder": 6}
     for index, (place, names) in enumerate(_names_by_place(config, structure)):
         tags, label = {"names": " ".join(names)}, "named point" if index == 0 else None
+        words = [wrapped(", ".join(name for name in names if name != driven))]
+        if set(names) & set(sensors.points):
+            words.append(f"sensors {', '.join(sensors.directions)}")
+        if driven in names:
+            words.append(f"drive\n{wrapped(driven)}")
         sheet.line(axes, *view.columns(place), "points", tags=tags, **dot, label=label)
-        if getattr(config.excitation, "point", None) in names:
+        if driven in names:
             _direction(axes, view, place, np.array(config.excitation.direction))
-        outward = _outward(structure, place, names[0], view)
+        # out of a bend, or to the side of a straight tube
+        tangent = _tangent(structure, place, names[0], view)
+        outward = view.seen(place) - view.seen(structure.nodes.mean(axis=0))
+        outward = outward - (outward @ tangent) * tangent
+        if np.linalg.norm(outward) < 1e-6:
+            outward = np.array([tangent[1], -tangent[0]])
+        outward = outward / np.linalg.norm(outward)
         # above and below a bend there is more room inside
         offset, alignment = _beside(-outward if abs(outward[0]) <= 0.4 else outward)
         label = axes.annotate(
-            _words_of_point(config, names),
+            "\n".join(filter(None, words)),
             view.seen(place),
             xytext=13 * offset,
             textcoords="offset points",
@@ -253,27 +260,6 @@ def _names_by_place(config, structure):
         else:
             names.append(name)
     return found
-
-
-def _words_of_point(config, names):
-    """Return the label of a point: its names, its sensors, and whether it is driven."""
-    driven, sensors = getattr(config.excitation, "point", None), config.record.sensors
-    lines = [wrapped(", ".join(name for name in names if name != driven))]
-    if set(names) & set(sensors.points):
-        lines.append(f"sensors {', '.join(sensors.directions)}")
-    if driven in names:
-        lines.append(f"drive\n{wrapped(driven)}")
-    return "\n".join(filter(None, lines))
-
-
-def _outward(structure, place, name, view):
-    """Return the direction (2,) out of a bend, or to the side of a straight tube."""
-    tangent = _tangent(structure, place, name, view)
-    outward = view.seen(place) - view.seen(structure.nodes.mean(axis=0))
-    outward = outward - (outward @ tangent) * tangent
-    if np.linalg.norm(outward) < 1e-6:
-        outward = np.array([tangent[1], -tangent[0]])
-    return outward / np.linalg.norm(outward)
 
 
 def _direction(axes, view, place, direction):
@@ -337,15 +323,24 @@ def figure_02_free_modes(config, structure):
     nodes = structure.nodes
     view = View.of(nodes)
     squares = {"linestyle": "none", "marker": "s", "color": BLACK, "markersize": 5}
+    cross = {"marker": "P", "color": RED, "markersize": 6, "linestyle": "none"}
     for order, (axes, value, shape) in enumerate(
         zip(sheet.axes.values(), frequency, shapes, strict=False), start=1
     ):
         across = np.sum(shape[:, view.depth] ** 2) > 0.5 * np.sum(shape**2)
         axes.set_title(f"{order} {'out of plane' if across else 'in plane'}, {value:.2f} Hz")
         look = {"color": BLUE if across else ORANGE, "linewidth": 2.2}
-        _draw_mode(sheet, axes, (nodes, view), value, shape, look)
+        displaced = nodes + SHAPE_SIZE * np.ptp(nodes, axis=0).max() * shape
+        for index in np.linspace(0, len(nodes) - 1, 41).astype(int):
+            pair = np.array([nodes[index], displaced[index]])
+            axes.plot(*view.obliquely(pair).T, color=PALE, linewidth=0.8, zorder=1)
+        tags = {"frequency_Hz": value, **{f"shape_{x}": shape[:, i] for i, x in enumerate("xyz")}}
+        _tube_obliquely(sheet, axes, view, nodes, "at rest", {}, color=GREY, linewidth=1.0)
+        _tube_obliquely(sheet, axes, view, displaced, "mode", tags, **look)
         axes.plot(*view.obliquely(nodes[held_ends(config.structure)]).T, **squares)
-        _draw_supports_obliquely(axes, structure, view)
+        for support in np.unique(structure.contact.support):
+            middle = structure.contact.position[structure.contact.support == support].mean(axis=0)
+            axes.plot(*view.obliquely(middle), **cross)
         axes.set_aspect("equal")
         axes.margins(0.1)
         axes.label_outer()
@@ -354,25 +349,7 @@ def figure_02_free_modes(config, structure):
     return sheet
 
 
-def _draw_mode(sheet, axes, seen, frequency, shape, look):
-    """Draw the tube at rest and displaced in a mode; seen: (nodes, view)."""
-    nodes, view = seen
-    displaced = nodes + SHAPE_SIZE * np.ptp(nodes, axis=0).max() * shape
-    for index in np.linspace(0, len(nodes) - 1, 41).astype(int):
-        pair = np.array([nodes[index], displaced[index]])
-        axes.plot(*view.obliquely(pair).T, color=PALE, linewidth=0.8, zorder=1)
-    tags = {"frequency_Hz": frequency, **{f"shape_{x}": shape[:, i] for i, x in enumerate("xyz")}}
-    for curve, points, tags_of, style in (
-        ("at rest", nodes, {}, {"color": GREY, "linewidth": 1.0}),
-        ("mode", displaced, tags, look),
-    ):
-        across, up = view.obliquely(points).T
-        sheet.line(axes, ("horizontal_m", across), ("vertical_m", up), curve, tags=tags_of, **style)
-
-
-def _draw_supports_obliquely(axes, structure, view):
-    """Draw the middle of each support as a small cross."""
-    cross = {"marker": "P", "color": RED, "markersize": 6, "linestyle": "none"}
-    for support in np.unique(structure.contact.support):
-        middle = structure.contact.position[structure.contact.support == support].mean(axis=0)
-        axes.plot(*view.obliquely(middle), **cross)
+def _tube_obliquely(sheet, axes, view, nodes, curve, tags, **style):
+    """Draw the tube as a line through nodes (node, 3)."""
+    across, up = view.obliquely(nodes).T
+    sheet.line(axes, ("horizontal_m", across), ("vertical_m", up), curve, tags=tags, **style)
