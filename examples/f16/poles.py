@@ -21,7 +21,7 @@ from vibroimpact.identify.lscf import NormalEquations
 from vibroimpact.identify.ods import deflection_shape
 from vibroimpact.identify.peak import LEVELS, find_peak, fit_peak
 from vibroimpact.identify.spectra.window_leakage import spectral_kernel
-from vibroimpact.identify.stabilisation import stabilisation_chart, stable_column
+from vibroimpact.identify.stabilisation import nearest_pole, stabilisation_chart
 from vibroimpact.io.records import write_table
 
 PERIOD_SAMPLES = 8192
@@ -179,6 +179,28 @@ def _lscf(response, line):
     )
     residues = np.linalg.lstsq(columns, values[:, 0, near].T, rcond=None)[0]
     return _pole_columns(found, (np.std(places), np.std(ratios))), residues[0]
+
+
+def stable_column(chart, start, radius_Hz):
+    """Return the poles (order,) in rad/s of the longest run of orders with a stable pole.
+
+    It serves frequency responses of a structure without a model: there is little noise, and the
+    order must grow until every mode of the band has found its pole. Empty if there is none.
+    Arguments as in first_stable_order.
+    """
+    longest = []
+    run = []
+    last = start
+    for order in np.unique(chart.order):
+        here = np.flatnonzero((chart.order == order) & chart.stable)
+        chosen = nearest_pole(chart.pole[here], last, radius_Hz)
+        if chosen is None:
+            run = []
+            continue
+        last = chart.pole[here[chosen]]
+        run = [*run, last]
+        longest = run if len(run) > len(longest) else longest
+    return np.array(longest)
 
 
 def _pole_columns(pole=(np.nan, np.nan), errors=(np.nan, np.nan)):

@@ -12,7 +12,7 @@ from tests.support.straight_path import straight_path
 from vibroimpact import EquivalentError, build_model, check_config, point_springs, springs_text
 from vibroimpact.equivalent_support import command
 from vibroimpact.equivalent_support.answer import NOT_MOVED, Answer, GroupAnswer, Span
-from vibroimpact.equivalent_support.export_formats.registry import FIRST_NUMBER
+from vibroimpact.equivalent_support.export_formats.frames import FIRST_NUMBER
 
 K, C = 8.0e4, 210.0
 TANGENT = np.array([1.0, 1.0, 0.0]) / math.sqrt(2.0)

@@ -8,13 +8,11 @@ import pytest
 from evidence.validation.prediction.laws import fit_law, free_level, plate_stiffness
 from evidence.validation.prediction.responses import (
     amplified,
+    expected_peak_factor,
     linear_response,
     prediction_rows,
     summary_rows,
     synthesise_records,
-)
-from vibroimpact.equivalent_support.linear_prediction import (
-    expected_peak_factor,
 )
 from vibroimpact.identify.linear.responses import frf
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
-from examples.f16.poles import pole_table, read_response
+from examples.f16.poles import pole_table, read_response, stable_column
+from tests.identify.test_lscf import chart, pole_of
 
 RECORDS = Path(__file__).resolve().parents[3] / "shared/data/f16_ground_vibration"
 
@@ -67,6 +68,21 @@ def test_a_known_pole_and_shape_come_back(tmp_path):
     assert exact[0]["frequency_Hz"] == pytest.approx(7.35, rel=1.0e-6) and exact[0][
         "damping_ratio"
     ] == pytest.approx(0.006, rel=1.0e-4)
+
+
+def test_the_longest_stable_column_is_found():
+    lone = chart(
+        (2, [(7.4, 0.03, True)]),
+        (3, [(7.3, 0.01, False)]),
+        (4, [(7.32, 0.005, True)]),
+        (5, [(7.31, 0.005, True)]),
+        (6, [(9.0, 0.01, True)]),
+        (7, [(7.2, 0.02, True)]),
+    )
+    np.testing.assert_allclose(
+        stable_column(lone, pole_of(7.3, 0.001), 0.3), [pole_of(7.32, 0.005), pole_of(7.31, 0.005)]
+    )
+    assert stable_column(lone, pole_of(3.0, 0.001), 0.3).size == 0
 
 
 def test_the_transient_period_is_left_out_and_the_rest_averaged(tmp_path):

@@ -31,7 +31,7 @@ def test_responses_are_those_of_the_full_solution(study_model, modes, k, c):
     expected = frf(study_model, k, c, frequency, shapes)
     np.testing.assert_allclose(response.frf(k, c)[0], expected, rtol=1.0e-7)
     np.testing.assert_allclose(
-        response.psd(k, c, slice(10, 20), slice(1, 2)),
+        response.of(slice(10, 20), slice(1, 2)).psd(k, c),
         np.abs(expected[1:, 10:20]) ** 2,
         rtol=1.0e-7,
     )

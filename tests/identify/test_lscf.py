@@ -19,7 +19,6 @@ from vibroimpact.identify.stabilisation import (
     first_stable_order,
     nearest_pole,
     stabilisation_chart,
-    stable_column,
 )
 
 FREQUENCIES = np.array([12.0, 21.0, 33.0])
@@ -158,21 +157,6 @@ def test_orders_that_split_a_broad_peak_are_skipped():
     assert first_stable_order(split, start, 3.0) == (4, False)
     early = chart((3, [(20.0, 0.06, False)]), (4, [(18.5, 0.04, False), (21.2, 0.04, False)]))
     assert first_stable_order(early, start, 3.0) == (3, False)
-
-
-def test_the_longest_stable_column_is_found():
-    lone = chart(
-        (2, [(7.4, 0.03, True)]),
-        (3, [(7.3, 0.01, False)]),
-        (4, [(7.32, 0.005, True)]),
-        (5, [(7.31, 0.005, True)]),
-        (6, [(9.0, 0.01, True)]),
-        (7, [(7.2, 0.02, True)]),
-    )
-    np.testing.assert_allclose(
-        stable_column(lone, pole_of(7.3, 0.001), 0.3), [pole_of(7.32, 0.005), pole_of(7.31, 0.005)]
-    )
-    assert stable_column(lone, pole_of(3.0, 0.001), 0.3).size == 0
 
 
 def test_flags_compare_with_the_order_before():

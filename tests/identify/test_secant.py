@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from vibroimpact.identify.linear.support_groups import SupportDirection
 from vibroimpact.identify.secant import secant_support, symmetric
 from vibroimpact.structure.contact.laws import ContactLaws
 
@@ -26,7 +27,9 @@ def model(**changes):
 
 
 def direction(along):
-    return SimpleNamespace(rows=np.arange(10), along=np.tile(along, (10, 1)))
+    return SupportDirection(
+        "all", "n", (), np.zeros((0, 10)), np.arange(10), np.tile(along, (10, 1))
+    )
 
 
 def moments(force, displacement, velocity):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.equivalent_support.linear_prediction import USABLE_dB
+from vibroimpact.equivalent_support.supports_prediction import USABLE_dB
 from vibroimpact.reports.figures.plot import Axis, Item, Panel, Plot, Series, Span
 from vibroimpact.reports.figures.style import BLUE, GREEN, GREY, ORANGE
 

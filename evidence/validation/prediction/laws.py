@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.equivalent_support.displacement_law import DisplacementLaw, HeldTube
-from vibroimpact.equivalent_support.support_directions import plate_shapes
+from vibroimpact.equivalent_support.displacement_law import DisplacementLaw, HeldTube, plate_shapes
 from vibroimpact.identify.linear.responses import frf
 from vibroimpact.io.records import plain_values
 from vibroimpact.reduction.modal_model import ModalModel

@@ -1,12 +1,13 @@
 """The response of the linear tube on its equivalent support beside that of the non-linear one."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
-from vibroimpact.equivalent_support.linear_prediction import (
+from vibroimpact.equivalent_support.supports_prediction import (
     BANDS_HZ,
     RESOLUTION_HZ,
     Response,
@@ -21,6 +22,22 @@ from vibroimpact.reduction.modal_model import ModalModel
 
 # Name and largest fraction of time in contact.
 REGIMES = (("hardly touching", 0.01), ("transition", 0.40), ("mostly in contact", 1.0))
+EULER_GAMMA = 0.5772
+TINY = np.finfo(float).tiny
+
+
+@dataclass(frozen=True)
+class TubeResponse(Response):
+    """A Response with the values that a designer asks for.
+
+    rms_displacement: {sensor: m}. rms_force: {support: N}. peak_stress: {section: Pa}.
+    contact: fraction of time, NaN for a linear tube.
+    """
+
+    rms_displacement: dict
+    rms_force: dict
+    peak_stress: dict
+    contact: float
 
 
 def linear_response(
@@ -30,8 +47,8 @@ def linear_response(
     load: float,
     band_Hz: Sequence[float],
     duration_s: float,
-) -> Response:
-    """Return the Response of the linear tube with support (k N/m, c N s/m).
+) -> TubeResponse:
+    """Return the TubeResponse of the linear tube with support (k N/m, c N s/m).
 
     load: RMS of the force, N, flat in band_Hz.
     duration_s: for the peak stress.
@@ -44,14 +61,62 @@ def linear_response(
     level = load**2 / (band_Hz[1] - band_Hz[0])
     outputs = np.hstack([displacement_and_stress(model), _support_shapes(model)])
     power = np.abs(frf(model, k, c, frequency, outputs)) ** 2 * level
-    places = len(model.sensor_names) + 2 * len(model.section_names)
+    sensors = len(model.sensor_names)
+    places = sensors + 2 * len(model.section_names)
     support = power[places:] * (k**2 + (2.0 * np.pi * frequency * c) ** 2)
     force = support.reshape(-1, 2, len(frequency)).sum(axis=1)
-    return response_of_psds(model, frequency, power[:places], force, duration_s)
+    stress = power[sensors:places].reshape(-1, 2, len(frequency)).sum(axis=1)
+    step, own = frequency[1] - frequency[0], response_of_psds(model, frequency, power[:places])
+    sigma = np.sqrt(stress.sum(axis=1) * step)
+    rate = np.sqrt((stress * frequency**2).sum(axis=1) * step) / np.maximum(sigma, TINY)
+    peaks = sigma * expected_peak_factor(rate * duration_s)
+    rms = np.sqrt(power[:sensors].sum(axis=1) * step)
+    return TubeResponse(
+        **vars(own),
+        rms_displacement=dict(zip(model.sensor_names, rms, strict=True)),
+        rms_force=dict(zip(model.support_names, np.sqrt(force.sum(axis=1) * step), strict=True)),
+        peak_stress=dict(zip(model.section_names, peaks, strict=True)),
+        contact=np.nan,
+    )
 
 
-def amplified(response: Response, gain: float) -> Response:
-    """Return the Response of a linear tube to a force `gain` times as large."""
+def expected_peak_factor(crossings: Any) -> Any:
+    """Return the expected maximum of a Gaussian process, in standard deviations.
+
+    crossings: expected number of upcrossings of the mean.
+    """
+    root = np.sqrt(2.0 * np.log(np.maximum(crossings, 2.0)))
+    return root + EULER_GAMMA / root
+
+
+def recorded_response(
+    record: xr.Dataset, frequency: np.ndarray, psd: np.ndarray, names: Sequence[str]
+) -> TubeResponse:
+    """Return the TubeResponse of a non-linear record.
+
+    record: Dataset with its statistics.
+    psd (sensor, frequency): m²/Hz, of the sensors `names`.
+    """
+    step = frequency[1] - frequency[0]
+    return TubeResponse(
+        frequency=frequency,
+        psd=dict(zip(names, psd, strict=True)),
+        rms_displacement=dict(zip(names, np.sqrt(psd.sum(axis=1) * step), strict=True)),
+        rms_force=_named(record, "support", "rms_force"),
+        rms_stress=_named(record, "section", "stress_rms"),
+        peak_stress=_named(record, "section", "stress_peak"),
+        contact=float(record["contact_fraction"].values.mean()),
+    )
+
+
+def _named(record, axis, name):
+    return dict(
+        zip([str(place) for place in record[axis].values], record[name].values, strict=True)
+    )
+
+
+def amplified(response: TubeResponse, gain: float) -> TubeResponse:
+    """Return the TubeResponse of a linear tube to a force `gain` times as large."""
 
     def times(values: dict[str, float]) -> dict[str, float]:
         return {place: gain * value for place, value in values.items()}
@@ -108,9 +173,12 @@ def synthesise_records(
 
 
 def prediction_rows(
-    labels: Mapping[str, Any], linear: Response, seeds: list[Response], sensors: Sequence[str]
+    labels: Mapping[str, Any],
+    linear: TubeResponse,
+    seeds: list[TubeResponse],
+    sensors: Sequence[str],
 ) -> list[dict]:
-    """Return the rows that compare one linear Response with the non-linear ones of several seeds.
+    """Return the rows that compare a linear TubeResponse with the non-linear ones of several seeds.
 
     labels: columns that identify the case.
     sensors: those whose displacement is compared (the driven direction).

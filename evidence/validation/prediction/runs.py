@@ -7,7 +7,6 @@ import numpy as np
 from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.reading import check_config
 from vibroimpact.config.structure import UTube
-from vibroimpact.equivalent_support.linear_prediction import recorded_response
 from vibroimpact.geometry.sections import outer_width
 from vibroimpact.identify.spectra.welch import psd_statistics, segment_spectra
 from vibroimpact.io.records import read_record, read_table
@@ -16,7 +15,7 @@ from vibroimpact.study.cases import Case, load_values
 from vibroimpact.study.simulation import simulate_cases
 
 from .laws import FREE, fit_law, free_level, plate_stiffness
-from .responses import amplified, linear_response, prediction_rows
+from .responses import amplified, linear_response, prediction_rows, recorded_response
 
 GAPS_OF_DIAMETER = (0.005, 0.020)
 LOADS_N = (1.5, 3.7, 8.0, 17.0)

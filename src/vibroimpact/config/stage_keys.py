@@ -84,7 +84,7 @@ STAGE_KEYS: dict[str, tuple[str, ...]] = {
         "record.stress_limit_Pa",
         "identification.stiffness_range_N_per_m",
     ),
-    "supports_prediction": ("excitation", "identification", "record.duration_s"),
+    "supports_prediction": ("excitation", "identification"),
     "timing": ("study",),
     "study_page": tuple(Config.model_fields),
     "validation": tuple(Config.model_fields),

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from vibroimpact.identify.method_names import method_name
+from vibroimpact.identify.estimate import method_name
 from vibroimpact.study.reasons import NOT_MOVED
 
 

@@ -85,18 +85,23 @@ def _add_export_arguments(parser: argparse.ArgumentParser) -> None:
         help="export: a transverse direction that was not identified gets the k and c of the other"
         " one (default), or no spring",
     )
+    add_file_arguments(parser, "export: ")
+
+
+def add_file_arguments(parser: argparse.ArgumentParser, about: str = "") -> None:
+    """Declare the unit and the numbers of a file for another program; about: begins their help."""
     parser.add_argument(
         "--unit",
         choices=("m", "mm"),
         default="m",
-        help="export: m, N, kg, s (default) or mm, N, t, s",
+        help=f"{about}m, N, kg, s (default) or mm, N, t, s",
     )
     parser.add_argument(
         "--first-number",
         type=int,
         default=900001,
         metavar="ID",
-        help="export: first number of nodes and elements (default 900001)",
+        help=f"{about}first number of nodes and elements (default 900001)",
     )
 
 

@@ -16,10 +16,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.identify.linear.modes import contact_matrix, driven_block
+from vibroimpact.identify.linear.support_groups import driven_direction
 from vibroimpact.identify.statistical_linearisation import band_power
 from vibroimpact.reduction.modal_model import ModalModel
-
-from .support_directions import plate_shapes
 
 STEPS_PER_DECADE = 24  # of the stiffnesses at which the linear tube is computed
 LOWEST_SHARE = 1.0e-6  # of the contact stiffness; a softer support counts as none
@@ -92,6 +91,19 @@ def held_tube(model: ModalModel, band_Hz: Sequence[float]) -> HeldTube:
         power = band_power(poles, gains, band_Hz) / (band_Hz[1] - band_Hz[0])
         motion[number], omega[number] = np.sqrt(power.mean()), np.sqrt(square[0])
     return HeldTube(stiffness, motion, omega)
+
+
+def plate_shapes(model: ModalModel) -> np.ndarray:
+    """Return (mode, support): mean displacement of each support's points along driven_direction."""
+    along = model.contact_shapes[:, :, driven_direction(model)]
+    return np.stack(
+        [
+            along[:, model.support_of_point == number]
+            @ model.contact_weight[model.support_of_point == number]
+            for number in range(len(model.support_names))
+        ],
+        axis=1,
+    )
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import numpy as np
 
 from vibroimpact.config.reading import config_of
 from vibroimpact.config.schema import Config
+from vibroimpact.identify.linear.support_groups import driven_word
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.reduction.reduced_model import build_model
 
@@ -16,7 +17,6 @@ from .displacement_law import held_tube
 from .homogeneity import effects_with_a_scale
 from .law_file import ShippedLaw, shipped_law
 from .missing_case import require_metres
-from .support_directions import driven_word
 
 
 def estimate_equivalent(config: Config | str | Path, load_rms_N: float, gap_m: float) -> Answer:

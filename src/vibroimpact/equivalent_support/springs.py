@@ -116,11 +116,11 @@ def _springs_of_support(
         axes, k, c = _along(model, int(point), groups, across)
         position = model.contact_position[point]
         yield PointSpring(
-            f"{support}_{order}", support, position, axes, _shared(k, share), _shared(c, share)
+            f"{support}_{order}", support, position, axes, shared(k, share), shared(c, share)
         )
 
 
-def _shared(pair: Pair, share: float) -> Pair:
+def shared(pair: Pair, share: float) -> Pair:
     """Return the share that one point has of the values of a support."""
     first, second = (None if value is None else share * value for value in pair)
     return first, second

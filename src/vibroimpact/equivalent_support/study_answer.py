@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.identify.estimate import METHODS
-from vibroimpact.identify.linear.support_groups import acting_directions
+from vibroimpact.identify.linear.support_groups import acting_directions, driven_word
 from vibroimpact.io.records import RecordError
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.reduction.model_file import read_model
@@ -23,7 +23,6 @@ from .homogeneity import effects_with_a_scale
 from .interpolation import SAME, Reading, ranges_of_agreement, read_at
 from .missing_case import no_study_sentence, outside_sentence, require_metres
 from .study_tables import RECOMMENDED, SUMMARY, recommended_rows_of, summary_rows_of
-from .support_directions import driven_word
 
 Rows = list[dict[str, Any]]
 

@@ -15,30 +15,22 @@ from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.identify.estimate import table_rows
 from vibroimpact.identify.identify_case import identify_case
 from vibroimpact.identify.linear.responses import FREQUENCY_CHUNK
-from vibroimpact.identify.linear.support_groups import ALL, SupportDirection, reached_supports
+from vibroimpact.identify.linear.support_groups import ALL, reached_supports
 from vibroimpact.identify.linear.supported_structure import SupportedStructure
 from vibroimpact.identify.spectra.welch import driven_axis
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.study.equivalent_table import equivalent_rows
 from vibroimpact.study.method_agreement import consistency_rows, summary_rows
 
-from .linear_prediction import (
-    BANDS_HZ,
-    RESOLUTION_HZ,
-    Response,
-    band_level,
-    compared_row,
-    displacement_and_stress,
-    recorded_response,
-    response_of_psds,
-)
-
+BANDS_HZ = ((5.0, 20.0), (20.0, 40.0), (40.0, 60.0), (60.0, 100.0), (100.0, 200.0))
+RESOLUTION_HZ = 0.01
+USABLE_dB = 2.0  # 26 % in amplitude: the "agree" of the study
 # Name of the linear supports: columns of a row of equivalent.csv that hold their k and c.
 ONE, EACH, SECANT = "one for all", "each its own", "secant"
 IDENTIFIED_COLUMNS = ("k_N_per_m", "c_N_s_per_m")
 SECANT_COLUMNS = ("secant_k_N_per_m", "secant_c_N_s_per_m")
 # Variables of the two files that are read, in addition to those of the identification.
-RECORD_READ = ("stress_rms", "stress_peak", "rms_force", "contact_fraction")
+RECORD_READ = ("stress_rms",)
 SPECTRA_READ = ("psd_displacement_mean",)
 COLUMNS = (
     *("gap_m", "load_rms_N", "supports", "quantity", "of", "unit"),
@@ -46,18 +38,37 @@ COLUMNS = (
 )
 
 
-@dataclass(frozen=True, eq=False)
-class LinearSupports:
-    """The supports of a linear structure.
+@dataclass(frozen=True)
+class Response:
+    """The response of one tube under one load.
 
-    directions: SupportDirections that the force moves; modes: indices of the modes that it moves.
-    k, c: (direction,) N/m and N s/m.
+    frequency (frequency,): Hz. psd: {sensor: (frequency,) m²/Hz}. rms_stress: {section: Pa}.
     """
 
-    directions: tuple[SupportDirection, ...]
-    modes: np.ndarray
-    k: np.ndarray
-    c: np.ndarray
+    frequency: np.ndarray
+    psd: dict
+    rms_stress: dict
+
+
+def displacement_and_stress(model: ModalModel) -> np.ndarray:
+    """Return (mode, sensor + 2 section): the sensors, then both bending stresses per section."""
+    return np.hstack([model.sensor_shapes, model.stress_shapes.reshape(len(model.omega), -1)])
+
+
+def response_of_psds(model: ModalModel, frequency: np.ndarray, power: np.ndarray) -> Response:
+    """Return the Response of a linear tube from its PSDs on evenly spaced frequencies.
+
+    frequency: (frequency,) Hz. power: (output, frequency) m²/Hz and Pa²/Hz, of the outputs of
+    displacement_and_stress.
+    """
+    step, sensors = frequency[1] - frequency[0], len(model.sensor_names)
+    stress = power[sensors:].reshape(-1, 2, len(frequency)).sum(axis=1)
+    sigma = np.sqrt(stress.sum(axis=1) * step)
+    return Response(
+        frequency=frequency,
+        psd=dict(zip(model.sensor_names, power[:sensors], strict=True)),
+        rms_stress=dict(zip(model.section_names, sigma, strict=True)),
+    )
 
 
 def linear_supports(
@@ -65,76 +76,50 @@ def linear_supports(
     groups: str | tuple[tuple[str, ...], ...],
     rows: Sequence[Mapping],
     columns: tuple[str, str] = IDENTIFIED_COLUMNS,
-) -> LinearSupports:
-    """Return the LinearSupports of one gap and load from its rows of equivalent.csv.
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return (k in N/m, c in N s/m), each (direction,), of one gap and load from its rows of
+    equivalent.csv, for the directions that the force moves.
 
     A k or c that is not resolved is 0: the data can not distinguish it from no support.
 
     groups: identification.groups.
     columns: names of the columns with k and c.
     """
-    directions, modes = reached_supports(model, groups)
     found = {(row["group"], row["direction"]): row for row in rows}
     values = np.array(
         [
             [found[direction.group, direction.direction][column] for column in columns]
-            for direction in directions
+            for direction in reached_supports(model, groups)[0]
         ],
         dtype=float,
     )
     k, c = np.nan_to_num(values, nan=0.0).T
-    return LinearSupports(directions, modes, k, c)
+    return k, c
 
 
 def supports_response(
     model: ModalModel,
-    supports: LinearSupports,
+    groups: str | tuple[tuple[str, ...], ...],
+    supports: tuple[np.ndarray, np.ndarray],
     load: float,
     band_Hz: Sequence[float],
-    duration_s: float,
 ) -> Response:
     """Return the Response of a structure on linear supports to a force flat in a band.
 
-    The force of a support is k + i omega c times the displacement of its points, by their share.
-
+    groups, supports: as in linear_supports, and its (k, c).
     load: RMS of the force, N.
-    duration_s: for the peak stress.
     """
     frequency = np.arange(band_Hz[0], band_Hz[1], RESOLUTION_HZ)
     level = load**2 / (band_Hz[1] - band_Hz[0])
-    shapes, owner, place = _mean_motion(model, supports.directions)
-    outputs = np.hstack([displacement_and_stress(model), shapes])
+    directions, modes = reached_supports(model, groups)
+    outputs = displacement_and_stress(model)
     power = np.empty((outputs.shape[1], len(frequency)))
     for first in range(0, len(frequency), FREQUENCY_CHUNK):
         part = slice(first, first + FREQUENCY_CHUNK)
-        structure = SupportedStructure(model, supports.directions, supports.modes, frequency[part])
-        response = structure.frf(structure.observed(outputs), supports.k, supports.c)
+        structure = SupportedStructure(model, directions, modes, frequency[part])
+        response = structure.frf(structure.observed(outputs), *supports)
         power[:, part] = np.sum(response.real**2 + response.imag**2, axis=-1).T * level
-    places = outputs.shape[1] - shapes.shape[1]
-    omega = 2.0 * np.pi * frequency
-    square = supports.k[owner, None] ** 2 + (supports.c[owner, None] * omega) ** 2
-    force = np.zeros((len(model.support_names), len(frequency)))
-    np.add.at(force, place, power[places:] * square)
-    return response_of_psds(model, frequency, power[:places], force, duration_s)
-
-
-def _mean_motion(
-    model: ModalModel, directions: Sequence[SupportDirection]
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return (shapes (mode, pair), index of the direction (pair,), index of the support (pair,)).
-
-    A pair is a support in a direction; its shape is the mean displacement of its points by share.
-    """
-    shapes, owner, place = [], [], []
-    for index, direction in enumerate(directions):
-        along = np.einsum("mpd,pd->mp", model.contact_shapes[:, direction.rows], direction.along)
-        weighted = along * model.contact_weight[direction.rows]
-        support = model.support_of_point[direction.rows]
-        for number in np.unique(support):
-            shapes.append(weighted[:, support == number].sum(axis=1))
-            owner.append(index)
-            place.append(number)
-    return np.stack(shapes, axis=1), np.array(owner), np.array(place)
+    return response_of_psds(model, frequency, power)
 
 
 def one_for_all(
@@ -171,7 +156,7 @@ def supports_prediction_rows(
     the input is free: gain_dB makes the mean error of the sensors in the whole band 0, in dB, and
     error_with_gain_dB is the rest.
 
-    settings: configuration with excitation, identification and record.duration_s.
+    settings: configuration with excitation and identification.
     equivalent: {ONE or EACH: rows of equivalent.csv}, both of the same cases.
     records, spectra: of the cases, in the same order.
     Raises ValueError for a force that is not flat in a band.
@@ -199,9 +184,7 @@ def supports_prediction_rows(
                 if np.isclose(row["gap_m"], gap_m) and np.isclose(row["load_rms_N"], load)
             ]
             supports = linear_supports(model, grouped, of_case, columns)
-            linear = supports_response(
-                model, supports, load, excitation.band_Hz, settings.record.duration_s
-            )
+            linear = supports_response(model, grouped, supports, load, excitation.band_Hz)
             labels = {"gap_m": gap_m, "load_rms_N": load, "supports": name}
             compared = _compared(linear, seeds, sensors, excitation.band_Hz, model.support_names)
             rows += [{**labels, **row} for row in _with_gain(compared, len(sensors))]
@@ -223,9 +206,13 @@ def _recorded(
     """Return {(gap, load): Responses of the seeds} of simulated cases."""
     cases: dict[tuple[float, float], list[Response]] = {}
     for record, of_case in zip(records, spectra, strict=True):
-        frequency = of_case["frequency"].values
         psd = of_case["psd_displacement_mean"].values.astype(float)
-        response = recorded_response(record, frequency, psd, model.sensor_names)
+        sections = [str(name) for name in record["section"].values]
+        response = Response(
+            of_case["frequency"].values,
+            dict(zip(model.sensor_names, psd, strict=True)),
+            dict(zip(sections, record["stress_rms"].values, strict=True)),
+        )
         place = (float(record.attrs["gap_m"]), float(record.attrs["load_rms_N"]))
         cases.setdefault(place, []).append(response)
     return cases
@@ -263,3 +250,35 @@ def _compared(
                 )
             )
     return rows
+
+
+def band_level(response: Response, sensor: str, low: float, high: float) -> float:
+    """Return the root of a sensor's mean PSD between two frequencies in Hz, in m/sqrt(Hz)."""
+    inside = (response.frequency >= low) & (response.frequency < high)
+    return float(np.sqrt(np.mean(response.psd[sensor][inside])))
+
+
+def compared_row(quantity: str, of: str, unit: str, linear: float, seeds: Sequence[float]) -> dict:
+    """Return the columns that compare a linear value with those of several seeds.
+
+    quantity, of, unit; linear, nonlinear (root mean square over seeds), scatter_dB (standard
+    error), error_dB, and usable: whether that is within USABLE_dB.
+    """
+    values = np.asarray(seeds, dtype=float)
+    nonlinear = float(np.sqrt(np.mean(values**2)))
+    error = 20.0 * np.log10(linear / nonlinear) if linear > 0.0 and nonlinear > 0.0 else np.nan
+    scatter = (
+        8.686 * values.std(ddof=1) / np.sqrt(values.size) / nonlinear
+        if values.size > 1 and nonlinear > 0.0
+        else np.nan
+    )
+    return {
+        "quantity": quantity,
+        "of": of,
+        "unit": unit,
+        "linear": float(linear),
+        "nonlinear": nonlinear,
+        "scatter_dB": float(scatter),
+        "error_dB": float(error),
+        "usable": bool(abs(error) <= USABLE_dB),
+    }

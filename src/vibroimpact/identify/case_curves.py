@@ -6,13 +6,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from .broadband import BroadbandFit
-from .identify_supports import SupportsCase, SupportsResult
-from .ods import DeflectionShape, ShapeMatch
+from .identify_supports import SupportsCase
+from .observed_case import ObservedCase
+from .ods import DeflectionShape
 from .operational_pole import OperationalPole
 from .peak import LEVELS, PeakFit
-from .reference_tube import ReferenceTube
-from .spectra_layout import SpectraLayout
 
 # name: (dimensions, units, long name)
 CURVES = {
@@ -51,62 +49,14 @@ SUPPORTS_CURVES = CURVES | {
 }
 
 
-def case_curves(
-    tube: ReferenceTube,
-    peaks: dict[str, PeakFit | None],
-    pole: OperationalPole | None,
-    shape: tuple[DeflectionShape, ShapeMatch] | None,
-    broad: BroadbandFit | None,
-) -> xr.Dataset:
-    """Return the curves of one case: fits, stabilisation chart, shape, MAC and correlation maps.
+def case_curves(case: ObservedCase, more: dict[str, Any], declared: Mapping = CURVES) -> xr.Dataset:
+    """Return the curves of one case: fits, stabilisation chart and shape, and those of `more`.
 
-    peaks: {method: PeakFit or None}.
+    more: {name: values}. declared: of all names, in the form of CURVES.
     """
-    data = _peaks(peaks, tube.layout.frequency) | _chart(pole)
-    if shape is not None:
-        measured, match = shape
-        data |= _deflection(measured)
-        data |= {"mac_k": match.k_grid, "mac": match.mac_grid, "best_mac": match.mac}
-    data |= {"map_k": tube.broadband_map.k, "map_c": tube.broadband_map.c}
-    if broad is not None:
-        data |= {
-            "correlation": broad.correlation_map,
-            "best_correlation": broad.correlation,
-            "broadband_curve": broad.curve,
-        }
-    return _dataset(data, CURVES, tube.layout, list(peaks))
-
-
-def supports_curves(case: SupportsCase, result: SupportsResult) -> xr.Dataset:
-    """Return the curves of one case with several unknown supports, as case_curves does.
-
-    There is no map over one k and c; the covariance of ln k over the directions takes its place.
-    """
-    layout, directions = case.layout, case.tube.directions
-    data = _peaks(result.peaks, layout.frequency) | _chart(result.pole)
-    if result.shape is not None:
-        data |= _deflection(result.shape)
-    if result.shapes is not None:
-        data["best_mac"] = result.shapes.mac
-    if result.spectra is not None:
-        stiffnesses = slice(len(directions))
-        data |= {
-            "best_correlation": result.spectra.correlation,
-            "broadband_curve": result.spectra.curve[layout.broadband],
-            "log_stiffness_covariance": result.spectra.found.covariance[stiffnesses, stiffnesses],
-        }
-    names = [direction.name for direction in directions]
-    about = {"long_name": "group of supports and direction"}
-    return _dataset(data, SUPPORTS_CURVES, layout, list(result.peaks)).assign_coords(
-        support_direction=("support_direction", names, about)
-    )
-
-
-def _dataset(
-    data: Mapping[str, Any], declared: Mapping, layout: SpectraLayout, levels: list[str]
-) -> xr.Dataset:
-    """Return declared variables with their units, and the levels and frequencies in Hz."""
+    layout = case.layout
     frequency, hertz = layout.frequency, {"units": "Hz", "long_name": "frequency"}
+    data = _peaks(case.peaks, frequency) | _chart(case.pole) | _deflection(case.shape) | more
     variables = {}
     for name, values in data.items():
         dims, units, long_name = declared[name]
@@ -114,10 +64,33 @@ def _dataset(
     return xr.Dataset(
         variables,
         {
-            "level": ("level", levels, {"long_name": "method by the width of the peak"}),
+            "level": ("level", list(case.peaks), {"long_name": "method by the width of the peak"}),
             "low_frequency": ("low_frequency", frequency, hertz),
             "broadband_frequency": ("broadband_frequency", frequency[layout.broadband_bins], hertz),
         },
+    )
+
+
+def supports_curves(case: SupportsCase) -> xr.Dataset:
+    """Return the curves of one case with several unknown supports, as case_curves does.
+
+    There is no map over one k and c; the covariance of ln k over the directions takes its place.
+    """
+    directions = case.tube.directions
+    more: dict[str, Any] = {}
+    if case.by_shapes is not None:
+        more["best_mac"] = case.by_shapes.mac
+    if case.by_spectra is not None:
+        stiffnesses, spectra = slice(len(directions)), case.by_spectra
+        more |= {
+            "best_correlation": spectra.correlation,
+            "broadband_curve": spectra.curve[case.layout.broadband],
+            "log_stiffness_covariance": spectra.found.covariance[stiffnesses, stiffnesses],
+        }
+    names = [direction.name for direction in directions]
+    about = {"long_name": "group of supports and direction"}
+    return case_curves(case, more, SUPPORTS_CURVES).assign_coords(
+        support_direction=("support_direction", names, about)
     )
 
 
@@ -145,8 +118,10 @@ def _chart(pole: OperationalPole | None) -> dict[str, Any]:
     }
 
 
-def _deflection(measured: DeflectionShape) -> dict[str, Any]:
+def _deflection(measured: DeflectionShape | None) -> dict[str, Any]:
     """Return the deflection shape in the phase in which most of it is real and positive."""
+    if measured is None:
+        return {}
     turned = measured.shape * np.exp(-0.5j * np.angle(np.sum(measured.shape**2)))
     turned = turned if turned.real[np.argmax(np.abs(turned))] > 0.0 else -turned
     return {

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import lru_cache
 
 import numpy as np
 import xarray as xr
@@ -23,13 +22,13 @@ from .estimate import (
     unresolved,
 )
 from .guards import other_mode, peak_not_crossed
-from .ods import DeflectionShape, ShapeMatch
+from .ods import ShapeMatch
 from .operational_pole import OperationalPole
 from .peak import PeakFit
 from .reference_tube import ReferenceTube
 from .secant import secant_support
 from .segment_scatter import jackknife_influences, segment_covariance
-from .statistical_linearisation import Linearisation, statistical_linearisation
+from .statistical_linearisation import statistical_linearisation
 
 # c is not resolved when its standard error exceeds this fraction of the pole's damping ratio.
 DAMPING_RATIO_LIMIT = 0.5
@@ -90,18 +89,15 @@ def with_doubts(
     return estimate
 
 
-def estimate_from_shape(
-    shape: tuple[DeflectionShape, ShapeMatch] | None, tube: ReferenceTube, averages: float
-) -> Estimate:
+def estimate_from_shape(match: ShapeMatch | None, tube: ReferenceTube, averages: float) -> Estimate:
     """Return the Estimate of a matched shape: k alone, because a shape carries no damping.
 
     averages: effective degrees of freedom of a bin.
     """
-    if shape is None:
+    if match is None:
         few = tube.model.line_shapes.shape[1] < 2
         note = "no peak sets a band inside that of the shape line's spectra"
         return unresolved("ods", ONE_SENSOR if few else note)
-    measured, match = shape
     influences = jackknife_influences(match.segment_changes[:, None])
     variance = segment_covariance(influences, averages)[0, 0]
     error = float(np.sqrt(variance + match.damping_change**2))
@@ -155,7 +151,7 @@ def comparison_estimates(
     Neither uses the spectrum of a response.
     """
     found = [_linearised(config, model, record, direction) for direction in directions]
-    return found + [_secant(model, record, direction) for direction in directions]
+    return found + [secant_support(record, model, direction) for direction in directions]
 
 
 def _linearised(
@@ -166,7 +162,7 @@ def _linearised(
     if config.excitation.kind != "band_limited":
         return unresolved(method, "needs a force of flat PSD in a band").at(direction)
     load, gap = float(record.attrs["load_rms_N"]), float(record.attrs["gap_m"])
-    case = _linearisation(model, load, gap, tuple(config.excitation.band_Hz))
+    case = statistical_linearisation(model, load, gap, tuple(config.excitation.band_Hz))
     k = case.stiffness_of(direction)
     if not np.isfinite(k):
         note = "needs a direction along an axis"
@@ -179,24 +175,3 @@ def _linearised(
         damping_ratio=case.damping_ratio,
     ).at(direction)
     return predicted if case.settled else mark_weak(predicted, "the iteration did not settle")
-
-
-def _secant(model: ModalModel, record: xr.Dataset, direction: SupportDirection) -> Estimate:
-    """Return the Estimate of the secant stiffness and damping."""
-    found = secant_support(record, model, direction)
-    return Estimate(
-        "secant",
-        found.k,
-        found.k_standard_error,
-        found.c,
-        found.c_standard_error,
-        note="standard error from the scatter over supports",
-    ).at(direction)
-
-
-@lru_cache(maxsize=32)
-def _linearisation(
-    model: ModalModel, load_rms_N: float, gap_m: float, band_Hz: tuple[float, float]
-) -> Linearisation:
-    """Return the Linearisation of a case; the same for all its seeds."""
-    return statistical_linearisation(model, load_rms_N, gap_m, band_Hz)

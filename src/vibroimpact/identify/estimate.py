@@ -11,7 +11,18 @@ import numpy as np
 from vibroimpact.identify.linear.support_groups import SupportDirection
 
 PEAK_METHODS = ("peak_half", "peak_quarter", "peak_25th")
-METHODS = (*PEAK_METHODS, "lscf", "ods", "broadband", "statistical_linearisation", "secant")
+# In words, the same in figures and on pages.
+METHOD_NAMES = {
+    "peak_half": "peak width at 1/2",
+    "peak_quarter": "peak width at 1/4",
+    "peak_25th": "peak width at 1/25",
+    "lscf": "LSCF pole",
+    "ods": "deflection shape",
+    "broadband": "broadband PSD",
+    "statistical_linearisation": "statistical linearisation",
+    "secant": "mean secant stiffness",
+}
+METHODS = tuple(METHOD_NAMES)
 QUALITIES = ("ok", "weak", "unresolved")
 
 # Relative standard error of the modal frequencies of a model that is otherwise right.
@@ -181,6 +192,11 @@ def table_rows(estimates: Iterable[Estimate], attributes: Mapping[str, Any]) -> 
             }
         )
     return rows
+
+
+def method_name(method: str) -> str:
+    """Return a method in words; one that is not known here by its own name, without underscores."""
+    return METHOD_NAMES.get(method, method.replace("_", " "))
 
 
 def joined(*notes: str) -> str:

@@ -64,6 +64,20 @@ def guarded(
     return found
 
 
+def unusable_channels(spectra: xr.Dataset) -> str:
+    """Return which sensors along the force do not move or have no finite spectra, or nothing.
+
+    spectra: dataset of study.case_spectra.
+    """
+    parts = spectra["sensor_spectra_re"].values, spectra["sensor_spectra_im"].values
+    size = np.abs(parts[0]).max(axis=(1, 2)) + np.abs(parts[1]).max(axis=(1, 2))
+    names = spectra["driven_sensor"].values
+    still = [str(name) for name, value in zip(names, size, strict=True) if value == 0.0]
+    wrong = [str(name) for name, value in zip(names, size, strict=True) if not np.isfinite(value)]
+    texts = [f"no motion at {', '.join(still)}"] if still else []
+    return "; ".join(texts + ([f"no finite spectra at {', '.join(wrong)}"] if wrong else []))
+
+
 def contact_fraction(record: xr.Dataset, group: str) -> float:
     """Return the share of time in contact of the support of a group that is touched most.
 

@@ -1,6 +1,7 @@
 """All identification methods on one case: from its spectra and model to estimates and curves."""
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -19,15 +20,14 @@ from .case_estimates import (
     estimate_from_shape,
 )
 from .estimate import Estimate, unresolved
-from .guards import GUARDED, guarded
+from .guards import GUARDED, guarded, unusable_channels
 from .identify_supports import SupportsCase, estimates_of_supports
-from .observed_case import ObservedCase
-from .ods import DeflectionShape, ShapeMatch, match_shape
+from .observed_case import ObservedCase, or_none
+from .ods import ShapeMatch, match_shape
 from .peak import PeakFit
 from .reference_tube import ReferenceTube
 from .secant import MOMENTS
-from .solvable import or_none, unusable_channels
-from .spectra_layout import SpectraLayout, spectra_layout
+from .spectra_layout import spectra_layout
 from .supports_tube import SupportsTube
 
 # Variables of the two files that identify_case uses.
@@ -41,6 +41,10 @@ SPECTRA_READ = (
 )
 FEWEST_SHAPE_BINS = 3
 FEWEST_SHAPE_POINTS = 2
+
+# Each built once per process for the same model and layout (and groups).
+reference_tube = lru_cache(maxsize=2)(ReferenceTube)
+supports_tube = lru_cache(maxsize=2)(SupportsTube)
 
 
 def identify_case(
@@ -73,9 +77,7 @@ def _identify(
     if len(directions) > 1 or not acts_on_all(directions[0], model, modes):
         tube = supports_tube(model, config.identification.groups, layout)
         case = SupportsCase(spectra, tube, config.identification)
-        result = case.fit()
-        estimates = estimates_of_supports(case, result)
-        curves = supports_curves(case, result)
+        estimates, curves = estimates_of_supports(case), supports_curves(case)
     else:
         estimates, curves = _identify_all_alike(
             ObservedCase(spectra, layout, config.identification), reference_tube(model, layout)
@@ -90,32 +92,44 @@ def _identify_all_alike(
     case: ObservedCase, tube: ReferenceTube
 ) -> tuple[list[Estimate], xr.Dataset]:
     """Return (estimates, curves) of supports that all have the same k and c."""
-    peaks = case.peak_fits(tube.other_modes)
-    pole = case.operational_pole(tube.cross_spectra)
-    shape = or_none(_matched_shape, case, tube, peaks["peak_25th"])
+    case.peaks = case.peak_fits(tube.other_modes)
+    case.pole = case.operational_pole(tube.cross_spectra)
+    match = or_none(_matched_shape, case, tube, case.peaks["peak_25th"])
     broad = or_none(_broadband, case, tube)
-    poles = {**peaks, "lscf": pole}
+    poles = {**case.peaks, "lscf": case.pole}
     estimates = [estimate_from_pole(method, fit, tube) for method, fit in poles.items()]
-    estimates.append(estimate_from_shape(shape, tube, case.averages))
+    estimates.append(estimate_from_shape(match, tube, case.averages))
     estimates.append(
         estimate_from_broadband(broad, tube)
         if case.force_known
         else unresolved("broadband", NEEDS_FORCE)
     )
-    return estimates, case_curves(tube, peaks, pole, shape, broad)
+    more: dict[str, Any] = {}
+    if match is not None:
+        more |= {"mac_k": match.k_grid, "mac": match.mac_grid, "best_mac": match.mac}
+    more |= {"map_k": tube.broadband_map.k, "map_c": tube.broadband_map.c}
+    if broad is not None:
+        more |= {
+            "correlation": broad.correlation_map,
+            "best_correlation": broad.correlation,
+            "broadband_curve": broad.curve,
+        }
+    return estimates, case_curves(case, more)
 
 
 def _matched_shape(
     case: ObservedCase, tube: ReferenceTube, fit: PeakFit | None
-) -> tuple[DeflectionShape, ShapeMatch] | None:
-    """Return the shape around the main peak and its match; None without one, or on one point."""
-    measured = None
-    if len(case.line) >= FEWEST_SHAPE_POINTS:
-        measured = case.main_shape(fit, FEWEST_SHAPE_BINS)
+) -> ShapeMatch | None:
+    """Return the match of the shape around the main peak; None without one, or on one point."""
+    if len(case.line) < FEWEST_SHAPE_POINTS:
+        return None
+    measured = case.main_shape(fit, FEWEST_SHAPE_BINS)
     if fit is None or measured is None:
         return None
     members = tube.shape_members(fit.damping_ratio, np.sqrt(fit.covariance[1, 1]))
-    return measured, match_shape(measured, tube.at_line, tube.mode_shapes, members)
+    match = match_shape(measured, tube.at_line, tube.mode_shapes, members)
+    case.shape = measured
+    return match
 
 
 def _broadband(case: ObservedCase, tube: ReferenceTube) -> BroadbandFit | None:
@@ -133,17 +147,3 @@ def _broadband(case: ObservedCase, tube: ReferenceTube) -> BroadbandFit | None:
         case.averages,
         segments,
     )
-
-
-@lru_cache(maxsize=2)
-def reference_tube(model: ModalModel, layout: SpectraLayout) -> ReferenceTube:
-    """Return the ReferenceTube, built once per process for the same model and layout."""
-    return ReferenceTube(model, layout)
-
-
-@lru_cache(maxsize=2)
-def supports_tube(
-    model: ModalModel, groups: str | tuple[tuple[str, ...], ...], layout: SpectraLayout
-) -> SupportsTube:
-    """Return the SupportsTube, built once per process for the same model, groups and layout."""
-    return SupportsTube(model, groups, layout)

@@ -5,13 +5,14 @@ every direction that the force reaches. The poles move these by the smallest ste
 main mode the measured pole.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 import xarray as xr
 
 from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.identify.linear.supported_structure import Observed
 
 from .broadband import NEEDS_FORCE
 from .case_estimates import (
@@ -23,61 +24,39 @@ from .case_estimates import (
 )
 from .estimate import Estimate, mark_weak, unresolved
 from .graded_supports import graded_supports
-from .observed_case import ObservedCase
-from .ods import DeflectionShape
+from .observed_case import ObservedCase, or_none
 from .operational_pole import OperationalPole
-from .peak import LEVELS, PeakFit
+from .peak import PeakFit
 from .pole_step import step_to_pole
-from .solvable import or_none
 from .support_fit import Start, SupportSearch, inverse_information
-from .supports_by_shapes import ShapeComparison, ShapesFit, block_shapes
+from .supports_by_shapes import BlockShapes, ShapeComparison, ShapesFit, block_shapes
 from .supports_by_spectra import SpectraComparison, SpectraFit
 from .supports_tube import SupportsTube
 
 SHAPE_LOSS = 0.1  # loss factor of the supports at the start of the search by shapes
 
 
-@dataclass(frozen=True)
-class SupportsResult:
-    """The results of the methods in one case.
-
-    peaks: {method: PeakFit or None}.
-    pole, shape, spectra, shapes: of the other methods, None if they found nothing.
-    """
-
-    peaks: dict[str, PeakFit | None]
-    pole: OperationalPole | None
-    shape: DeflectionShape | None
-    spectra: SpectraFit | None
-    shapes: ShapesFit | None
-
-
 class SupportsCase(ObservedCase):
-    """The spectra of one case, and the fit of each method to them."""
+    """The spectra of one case, and the fit of each method to them.
+
+    by_shapes, by_spectra, peaks, pole, shape: of the methods, None for each that found nothing. The
+        peaks and the pole need the structure on the supports that spectra or shapes gave.
+    """
 
     def __init__(self, spectra: xr.Dataset, tube: SupportsTube, identification: ConfigPart) -> None:
         super().__init__(spectra, tube.layout, identification)
         self.tube = tube
         self.search = SupportSearch(tube.layout.stiffness_range, 2.0 * np.pi * self.peak[0])
-
-    def fit(self) -> SupportsResult:
-        """Return the SupportsResult.
-
-        The peaks and the pole need the structure on the supports that spectra or shapes gave.
-        """
-        shapes = or_none(self.by_shapes)
-        spectra = or_none(self.by_spectra, shapes)
-        peaks: dict[str, PeakFit | None] = dict.fromkeys(LEVELS)
-        pole = None
-        start = spectra or shapes
+        self.by_shapes = or_none(self._by_shapes)
+        self.by_spectra = or_none(self._by_spectra, self.by_shapes)
+        start = self.by_spectra or self.by_shapes
         if start is not None:
             supports = start.values.k, start.values.c
-            peaks = self.peak_fits(self.tube.other_modes(*supports))
-            pole = or_none(lambda: self.operational_pole(self.tube.cross_spectra(*supports)))
-        shape = or_none(self.main_shape, peaks["peak_25th"], 1)
-        return SupportsResult(peaks, pole, shape, spectra, shapes)
+            self.peaks = self.peak_fits(tube.other_modes(*supports))
+            self.pole = or_none(lambda: self.operational_pole(tube.cross_spectra(*supports)))
+        self.shape = or_none(self.main_shape, self.peaks["peak_25th"], 1)
 
-    def by_spectra(self, shapes: ShapesFit | None) -> SpectraFit | None:
+    def _by_spectra(self, shapes: ShapesFit | None) -> SpectraFit | None:
         """Return the SpectraFit, or None if the force is not known or has no power in the band.
 
         The supports of the shapes are one more start: spectra alone have more false minima.
@@ -88,13 +67,11 @@ class SupportsCase(ObservedCase):
             return None
         segments = (values.real**2 + values.imag**2).swapaxes(0, 1)
         moving = segments.any(axis=(0, 2))  # a dead sensor, or one at a node
+        fine, bins = (observed.outputs(moving) for observed in tube.at_broadband)
         comparison = SpectraComparison(
-            tube.structure,
-            tube.at_broadband.outputs(moving),
-            tube.layout.kernel,
-            segments[:, moving],
+            tube.structure, fine, tube.layout.kernel, segments[:, moving]
         )
-        coarse = partial(comparison.coarse_cost, tube.at_broadband_bins.outputs(moving))
+        coarse = partial(comparison.coarse_cost, bins)
         starts = self.search.coarse_starts(coarse, len(tube.directions))
         if shapes is not None:
             starts.append(Start(np.log(shapes.values.k), SHAPE_LOSS))
@@ -103,36 +80,34 @@ class SupportsCase(ObservedCase):
         curve[moving] = found.curve
         return replace(found, curve=curve)
 
-    def by_shapes(self) -> ShapesFit | None:
+    def _by_shapes(self) -> ShapesFit | None:
         """Return the ShapesFit, or None if nothing along the line moves, or one point does."""
         tube, layout = self.tube, self.layout
         if len(self.line) < 2 or not np.any(tube.model.line_shapes[tube.structure.modes]):
             return None
         measured = block_shapes(self.line, self.line_frequency, layout.kernel)
-        fine = tube.structure.frequency[tube.at_line.part]
-        comparison = ShapeComparison(
-            tube.structure, tube.at_line, measured, self.search, layout.excited(fine)
-        )
-        kernel = layout.kernel
-        taps = slice(kernel.half_width, -kernel.half_width or None, kernel.oversampling)
-        coarse = ShapeComparison(
-            tube.structure,
-            tube.at_line_bins,
-            replace(measured, weights=measured.weights[:, taps]),
-            self.search,
-            layout.excited(self.line_frequency),
-        )
+        fine, bins = tube.at_line
+        at_bins = replace(measured, weights=measured.weights[:, layout.kernel.bins])
+
+        def compared(
+            observed: Observed, shapes: BlockShapes, frequency: np.ndarray
+        ) -> ShapeComparison:
+            force = layout.excited(frequency)
+            return ShapeComparison(tube.structure, observed, shapes, self.search, force)
+
+        coarse = compared(bins, at_bins, self.line_frequency)
         starts = self.search.coarse_starts(coarse.cost, len(tube.directions), (SHAPE_LOSS,))
+        comparison = compared(fine, measured, tube.structure.frequency[fine.part])
         return comparison.fit(starts, tube.lowest_stable_damping)
 
 
-def estimates_of_supports(case: SupportsCase, result: SupportsResult) -> list[Estimate]:
+def estimates_of_supports(case: SupportsCase) -> list[Estimate]:
     """Return the Estimates of all methods for every direction, method by method."""
     found: list[Estimate] = []
-    for method, fit in {**result.peaks, "lscf": result.pole}.items():
-        estimates = _estimates_by_pole(case, result, method, fit)
+    for method, fit in {**case.peaks, "lscf": case.pole}.items():
+        estimates = _estimates_by_pole(case, method, fit)
         found += [with_doubts(each, fit, case.layout.seen_band_Hz) for each in estimates]
-    return found + _estimates_by_shapes(case, result) + _estimates_by_spectra(case, result)
+    return found + _estimates_by_shapes(case) + _estimates_by_spectra(case)
 
 
 def _unresolved(case: SupportsCase, method: str, note: str, *pole: float) -> list[Estimate]:
@@ -140,22 +115,19 @@ def _unresolved(case: SupportsCase, method: str, note: str, *pole: float) -> lis
 
 
 def _estimates_by_pole(
-    case: SupportsCase,
-    result: SupportsResult,
-    method: str,
-    fit: PeakFit | OperationalPole | None,
+    case: SupportsCase, method: str, fit: PeakFit | OperationalPole | None
 ) -> list[Estimate]:
     """Return the Estimates of the step that a pole adds to the broadband comparison."""
     if fit is None:
         return _unresolved(case, method, "no resonance could be fitted to the main peak")
     main = fit.frequency, fit.damping_ratio
-    if result.spectra is None:
+    if case.by_spectra is None:
         note = f"a pole alone tells no support from others; {_why(case)}"
         return _unresolved(case, method, note, *main)
-    found = result.spectra.found
+    found = case.by_spectra.found
     scattered = bool(np.any(found.covariance))
     if not scattered:  # spectra without scatter: the shape of the covariance, without a size
-        jacobian = result.spectra.values.jacobian
+        jacobian = case.by_spectra.values.jacobian
         found = replace(found, covariance=inverse_information(jacobian))
     step = step_to_pole(case.tube.structure, found, (*main, fit.covariance))
     if step is None:
@@ -174,9 +146,9 @@ def _why(case: SupportsCase) -> str:
     return "no supports have these spectra"
 
 
-def _estimates_by_shapes(case: SupportsCase, result: SupportsResult) -> list[Estimate]:
+def _estimates_by_shapes(case: SupportsCase) -> list[Estimate]:
     """Return the Estimates of the shapes: k alone."""
-    fit = result.shapes
+    fit = case.by_shapes
     if fit is None:
         still = "no supports have the shapes of the shape line"
         return _unresolved(case, "ods", ONE_SENSOR if len(case.line) < 2 else still)
@@ -186,9 +158,9 @@ def _estimates_by_shapes(case: SupportsCase, result: SupportsResult) -> list[Est
     return estimates
 
 
-def _estimates_by_spectra(case: SupportsCase, result: SupportsResult) -> list[Estimate]:
+def _estimates_by_spectra(case: SupportsCase) -> list[Estimate]:
     """Return the Estimates of the broadband comparison."""
-    fit = result.spectra
+    fit = case.by_spectra
     if fit is None:
         return _unresolved(case, "broadband", _why(case))
     estimates = [

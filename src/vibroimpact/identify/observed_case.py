@@ -1,11 +1,13 @@
 """The spectra of one case as all methods read them, and the fits to their main peak."""
 
 from collections.abc import Callable
+from typing import TypeVar
 
 import numpy as np
 import xarray as xr
 
 from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.identify.linear.modes import PoleError
 from vibroimpact.identify.spectra.welch import complex_values
 
 from .broadband import UNKNOWN
@@ -13,8 +15,22 @@ from .ods import DeflectionShape, deflection_shape
 from .operational_pole import OperationalPole, PoleSearch, operational_pole
 from .peak import LEVELS, PeakFit, find_peak, fit_peak
 from .segment_scatter import effective_duration
-from .solvable import or_none
 from .spectra_layout import SpectraLayout
+
+Result = TypeVar("Result")
+
+
+def or_none(method: Callable[..., Result | None], *arguments: object) -> Result | None:
+    """Return the result of a method, None if its equations have no solution.
+
+    Spectra without a resonance, of sensors that do not move or that move alike, make matrices
+    singular.
+    """
+    try:
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            return method(*arguments)
+    except (np.linalg.LinAlgError, PoleError):
+        return None
 
 
 class ObservedCase:
@@ -23,6 +39,8 @@ class ObservedCase:
     outputs, line: (sensor, segment, frequency) and (line_point, segment, line_frequency) complex.
     averages: effective degrees of freedom of a bin.
     peak: (frequency, width) of the main peak in Hz.
+    peaks, pole, shape: {method: PeakFit or None}, OperationalPole and DeflectionShape of the main
+        peak, None if not found.
     """
 
     def __init__(
@@ -38,6 +56,9 @@ class ObservedCase:
         self.segments = response.real**2 + response.imag**2
         self.psd = self.segments.mean(axis=0)
         self.peak = find_peak(layout.frequency, self.psd, identification.peak_search_Hz)
+        self.peaks: dict[str, PeakFit | None] = dict.fromkeys(LEVELS)
+        self.pole: OperationalPole | None = None
+        self.shape: DeflectionShape | None = None
 
     def peak_fits(self, other_modes: Callable) -> dict[str, PeakFit | None]:
         """Return {method: PeakFit of the main peak at its level, or None}.

@@ -98,15 +98,12 @@ def deflection_shape(
     return DeflectionShape(vectors[:, -1], singular / singular[0], without, tuple(band_Hz))
 
 
-def linear_ods(
-    response: FamilyResponse, part: slice | np.ndarray, k: float, c: float
-) -> np.ndarray:
+def linear_ods(response: FamilyResponse, k: float, c: float) -> np.ndarray:
     """Return the ODS (line_point,) of the linear tube with support (k, c), of unit length.
 
-    response: FamilyResponse of the line's points.
-    part: selects the frequencies of the band.
+    response: FamilyResponse of the line's points over the band.
     """
-    motion = response.frf(k, c, part)
+    motion = response.frf(k, c)
     return np.linalg.eigh((motion @ motion.conj().swapaxes(1, 2)).sum(axis=0))[1][:, -1]
 
 
@@ -128,14 +125,15 @@ def match_shape(
     """
     low, high = measured.band_Hz
     inside = (response.frequency >= low) & (response.frequency <= high)
-    part = slice(int(np.argmax(inside)), int(inside.size - np.argmax(inside[::-1])))
-    family = _FamilyShapes(response, part, member)
+    response = response.of(
+        slice(int(np.argmax(inside)), int(inside.size - np.argmax(inside[::-1])))
+    )
     k_grid, shapes = mode_shapes
     macs = mac(measured.shape, shapes)
     limits = np.log(k_grid[[0, -1]])
     log_k = np.log(k_grid[np.argmax(macs)])
     for _ in range(MATCH_STEPS):
-        middle, slope = family.shape_and_slope(log_k)
+        middle, slope = _shape_and_slope(response, member, log_k)
         strength = np.vdot(slope, slope).real
         change = np.vdot(slope, _phase_aligned(measured.shape, middle)).real / strength
         step = np.clip(change, -LARGEST_CHANGE, LARGEST_CHANGE)
@@ -151,7 +149,7 @@ def match_shape(
 
     def change_with_damping(errors: float) -> float:
         """Return the change of ln k when the peak's damping is `errors` standard errors higher."""
-        moved = _phase_aligned(family.shape(log_k, errors), middle)
+        moved = _phase_aligned(linear_ods(response, *member(log_k, errors)), middle)
         moved_k = np.vdot(slope, moved).real / strength
         return float(np.log(abs(member(log_k, errors)[0] / member(log_k)[0])) - moved_k)
 
@@ -171,29 +169,19 @@ def match_shape(
     )
 
 
-class _FamilyShapes:
-    """The shapes of the members of the family over one band, by ln k."""
+def _shape_and_slope(
+    response: FamilyResponse, member: Callable[..., tuple[float, float]], log_k: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return (ODS (line_point,) of a member, its derivative by ln k (line_point,)).
 
-    def __init__(
-        self, response: FamilyResponse, part: slice, member: Callable[..., tuple[float, float]]
-    ) -> None:
-        self._response, self._part, self._member = response, part, member
-
-    def shape(self, log_k: float, errors: float = 0.0) -> np.ndarray:
-        """Return the ODS (line_point,) of the member."""
-        return linear_ods(self._response, self._part, *self._member(log_k, errors))
-
-    def shape_and_slope(self, log_k: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return (ODS (line_point,) of the member, its derivative by ln k (line_point,)).
-
-        The derivative has no part along the shape itself.
-        """
-        middle = self.shape(log_k)
-        ends = [_phase_aligned(self.shape(log_k + step), middle) for step in (-STEP, STEP)]
-        low, high = (self._member(log_k + step)[0] for step in (-STEP, STEP))
-        width = np.log(high / low) if low > 0.0 else 2.0 * STEP
-        slope = (ends[1] - ends[0]) / width
-        return middle, slope - middle * np.vdot(middle, slope)
+    The derivative has no part along the shape itself.
+    """
+    middle = linear_ods(response, *member(log_k))
+    below, above = member(log_k - STEP), member(log_k + STEP)
+    ends = [_phase_aligned(linear_ods(response, *end), middle) for end in (below, above)]
+    width = np.log(above[0] / below[0]) if below[0] > 0.0 else 2.0 * STEP
+    slope = (ends[1] - ends[0]) / width
+    return middle, slope - middle * np.vdot(middle, slope)
 
 
 def _phase_aligned(shape: np.ndarray, other: np.ndarray) -> np.ndarray:

@@ -35,7 +35,6 @@ class OperationalPole:
     covariance: (2, 2) of the two.
     order: order of the estimator.
     stable: whether the pole was stable against the order before.
-    bias: rad/s, subtracted from the pole.
     chart: StabilisationChart.
     """
 
@@ -44,7 +43,6 @@ class OperationalPole:
     covariance: np.ndarray
     order: int
     stable: bool
-    bias: complex
     chart: StabilisationChart
 
 
@@ -130,7 +128,7 @@ def operational_pole(
         poles = [found if pole is None else pole for pole in without]
         moved = np.array([frequency_of(pole - bias) for pole in poles])
         covariance = widened(covariance, jackknife_influences(moved), averages)
-    return OperationalPole(float(frequency), float(ratio), covariance, order, stable, bias, chart)
+    return OperationalPole(float(frequency), float(ratio), covariance, order, stable, chart)
 
 
 def cramer_rao_covariance(frequency: float, damping_ratio: float, duration_s: float) -> np.ndarray:

@@ -44,15 +44,9 @@ class ReferenceTube:
     @cached_property
     def at_broadband(self) -> FamilyResponse:
         """Return the FamilyResponse of the broadband sensor on the fine grid of its band."""
-        layout, response = self.layout, self.at_sensors
+        layout = self.layout
         index = layout.kernel.fine_index(layout.frequency[layout.broadband_bins])
-        own = slice(layout.broadband, layout.broadband + 1)
-        return FamilyResponse(
-            response.frequency[index],
-            response.free[:, own, index],
-            response.residue[:, own, index],
-            response.compliance[index],
-        )
+        return self.at_sensors.of(index, slice(layout.broadband, layout.broadband + 1))
 
     @cached_property
     def broadband_map(self) -> FamilyMap:
@@ -161,7 +155,7 @@ class ReferenceTube:
         def factor(fine_index):
             if not np.isfinite(support.k):
                 return np.ones(fine_index.size)
-            psd = self.at_sensors.psd(support.k, support.c, fine_index, own)[0]
+            psd = self.at_sensors.of(fine_index, own).psd(support.k, support.c)[0]
             grid = self.family.frequency[fine_index]
             ratio = psd / resonance(grid, np.log(frequency), np.log(damping_ratio))[0]
             return ratio / ratio[fine_index.size // 2]
@@ -184,7 +178,7 @@ class ReferenceTube:
             c = self.lowest_stable_damping(support.k)
             pole = first_pole(self.model, support.k, c)
         layout = self.layout
-        response = self.at_sensors.frf(support.k, c, layout.fine_bins)
+        response = self.at_sensors.of(layout.fine_bins).frf(support.k, c)
         response = response * layout.excited(layout.frequency)
         seen = response[:, None, list(layout.references), :].conj()
         return (response[:, :, None, :] * seen).sum(axis=0), pole

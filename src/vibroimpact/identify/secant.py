@@ -7,14 +7,14 @@ one-sided stop has no part in the stiffness. c counts the power that leaves the 
 that friction and damping dissipate, and that the contact hands to the other direction.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 import xarray as xr
 
 from vibroimpact.identify.linear.support_groups import SupportDirection
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.structure.contact.laws import ContactLaws
+
+from .estimate import Estimate
 
 # Moments of a record that secant_support reads.
 MOMENTS = (
@@ -30,24 +30,10 @@ MOMENTS = (
 SMALL_OFFSET = 1.0e-3  # of the gap: an imperfection, not an asymmetry
 
 
-@dataclass(frozen=True)
-class SecantSupport:
-    """The secant stiffness and damping of a group of supports in one direction.
+def secant_support(record: xr.Dataset, model: ModalModel, direction: SupportDirection) -> Estimate:
+    """Return the Estimate of a record, summed over the points of the group's supports.
 
-    k, c: N/m and N s/m per support. The standard errors are the scatter over the supports, NaN for
-        a single one.
-    """
-
-    k: float
-    k_standard_error: float
-    c: float
-    c_standard_error: float
-
-
-def secant_support(
-    record: xr.Dataset, model: ModalModel, direction: SupportDirection
-) -> SecantSupport:
-    """Return the SecantSupport of a record, summed over the points of the group's supports.
+    Its standard errors are the scatter over the supports, NaN for a single one.
 
     record: with MOMENTS, each over contact points, and directions or not; gap_m as attribute.
     """
@@ -65,9 +51,12 @@ def secant_support(
         work, square = work - force * mean, square - mean**2
     support = model.support_of_point[direction.rows]
     weight = model.contact_weight[direction.rows]
-    return SecantSupport(
-        *_ratio(work, square, weight, support), *_ratio(power, speed, weight, support)
-    )
+    return Estimate(
+        "secant",
+        *_ratio(work, square, weight, support),
+        *_ratio(power, speed, weight, support),
+        note="standard error from the scatter over supports",
+    ).at(direction)
 
 
 def symmetric(model: ModalModel, gap_m: float) -> bool:

@@ -137,28 +137,6 @@ def first_stable_order(
     return max((order for order in single if order <= FIRST_ORDER), default=FIRST_ORDER), False
 
 
-def stable_column(chart: StabilisationChart, start: complex, radius_Hz: float) -> np.ndarray:
-    """Return the poles (order,) in rad/s of the longest run of orders with a stable pole.
-
-    It serves frequency responses of a structure without a model: there is little noise, and the
-    order must grow until every mode of the band has found its pole. Empty if there is none.
-    Arguments as in first_stable_order.
-    """
-    longest: list[complex] = []
-    run: list[complex] = []
-    last = start
-    for order in np.unique(chart.order):
-        here = np.flatnonzero((chart.order == order) & chart.stable)
-        chosen = nearest_pole(chart.pole[here], last, radius_Hz)
-        if chosen is None:
-            run = []
-            continue
-        last = chart.pole[here[chosen]]
-        run = [*run, last]
-        longest = run if len(run) > len(longest) else longest
-    return np.array(longest)
-
-
 def stable_poles(
     frequency: np.ndarray, response: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, StabilisationChart]:

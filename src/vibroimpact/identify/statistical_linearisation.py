@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy.special import erfc
@@ -40,8 +41,9 @@ class Linearisation:
         return float(np.sum(self.work[place]) / np.sum(self.square[place]))
 
 
+@lru_cache(maxsize=32)
 def statistical_linearisation(
-    model: ModalModel, load_rms_N: float, gap_m: float, band_Hz: Sequence[float]
+    model: ModalModel, load_rms_N: float, gap_m: float, band_Hz: tuple[float, float]
 ) -> Linearisation:
     """Return the Linearisation of the contacts under a random force of flat PSD.
 

@@ -43,36 +43,29 @@ class SupportsTube:
         self._sensor_shapes = layout.sensor_shapes(model)
 
     @cached_property
-    def at_broadband(self) -> Observed:
-        """Return the sensors on the fine grid of the broadband comparison."""
-        layout = self.layout
-        index = layout.kernel.fine_index(layout.frequency[layout.broadband_bins])
-        return self.structure.observed(self._sensor_shapes, index)
+    def at_broadband(self) -> tuple[Observed, Observed]:
+        """Return the sensors on the fine grid of the broadband comparison, and on its bins."""
+        return self._observed(
+            self._sensor_shapes, self.layout.frequency[self.layout.broadband_bins]
+        )
 
     @cached_property
-    def at_broadband_bins(self) -> Observed:
-        """Return the sensors on the bins of the broadband comparison."""
-        layout = self.layout
-        index = np.arange(layout.highest + 1)[layout.broadband_bins] * layout.kernel.oversampling
-        return self.structure.observed(self._sensor_shapes, index)
+    def at_line(self) -> tuple[Observed, Observed]:
+        """Return the shape line on the fine grid of its bins, and on these."""
+        return self._observed(self.model.line_shapes, self.layout.line_frequency)
+
+    def _observed(self, shapes: np.ndarray, frequency: np.ndarray) -> tuple[Observed, Observed]:
+        """Return outputs on the fine grid of some bins (frequency,) in Hz, and on the bins."""
+        kernel = self.layout.kernel
+        fine = kernel.fine_index(frequency)
+        return self.structure.observed(shapes, fine), self.structure.observed(
+            shapes, fine[kernel.bins]
+        )
 
     @cached_property
     def at_sensors(self) -> Observed:
         """Return the sensors on the whole fine grid."""
         return self.structure.observed(self._sensor_shapes)
-
-    @cached_property
-    def at_line(self) -> Observed:
-        """Return the shape line on the fine grid of its bins."""
-        index = self.layout.kernel.fine_index(self.layout.line_frequency)
-        return self.structure.observed(self.model.line_shapes, index)
-
-    @cached_property
-    def at_line_bins(self) -> Observed:
-        """Return the shape line on its bins."""
-        index = np.arange(self.layout.line_first, self.layout.line_last + 1)
-        fine = self.layout.kernel.oversampling
-        return self.structure.observed(self.model.line_shapes, index * fine)
 
     def lowest_stable_damping(self, k: np.ndarray) -> np.ndarray:
         """Return (direction,) the negative c in N s/m that all modes bear at k (direction,) in N/m.

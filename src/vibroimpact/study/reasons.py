@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from vibroimpact.identify.method_names import method_name
+from vibroimpact.identify.estimate import method_name
 from vibroimpact.io.display_units import display_unit
 
 from .method_agreement import AGREEMENT, FEWEST, WEAK, Span

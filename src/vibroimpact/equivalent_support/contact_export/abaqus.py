@@ -12,8 +12,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..export_formats.frames import numbers, plain_name
-from ..export_formats.unit_system import UnitSystem
+from ..export_formats.frames import UnitSystem, numbers, plain_name
 from .points import ContactPoint, ContactSet
 
 DIGITS = ".9E"

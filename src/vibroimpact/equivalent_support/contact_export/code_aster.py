@@ -16,8 +16,7 @@ import numpy as np
 from vibroimpact.config.profiles import Lobes
 from vibroimpact.structure.contact.outline import radial_gap
 
-from ..export_formats.frames import numbers, plain_name
-from ..export_formats.unit_system import UnitSystem
+from ..export_formats.frames import UnitSystem, numbers, plain_name
 from .points import ContactPoint, ContactSet
 
 FAR = 1.0  # m, half the distance of the two planes of a land

@@ -8,6 +8,8 @@ from __future__ import annotations
 import argparse
 import sys
 
+from ..command import add_file_arguments
+
 FORMATS = ("abaqus", "opensees", "code_aster")
 
 
@@ -24,16 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar=("FORMAT", "FILE"),
         help=f"format and path of the file; FORMAT: {', '.join(FORMATS)}",
     )
-    parser.add_argument(
-        "--unit", choices=("m", "mm"), default="m", help="m, N, kg, s (default) or mm, N, t, s"
-    )
-    parser.add_argument(
-        "--first-number",
-        type=int,
-        default=900001,
-        metavar="ID",
-        help="first number of nodes and elements (default 900001)",
-    )
+    add_file_arguments(parser)
     parser.set_defaults(command=run)
 
 

@@ -12,8 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..answer import EquivalentError
-from ..export_formats.frames import global_axes, numbers, plain_name
-from ..export_formats.unit_system import UnitSystem
+from ..export_formats.frames import UnitSystem, global_axes, numbers, plain_name
 from .points import ContactPoint, ContactSet
 
 DIGITS = ".9e"

@@ -11,8 +11,7 @@ from vibroimpact.config.schema import Config
 from vibroimpact.reduction.modal_model import ModalModel
 
 from ..answer import EquivalentError
-from ..export_formats.frames import head
-from ..export_formats.unit_system import UnitSystem
+from ..export_formats.frames import UnitSystem, head
 from ..springs import SpringSet
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from ..answer import EquivalentError
-from ..export_formats.unit_system import UnitSystem, unit_system
+from ..export_formats.frames import FIRST_NUMBER, UnitSystem, unit_system
 from . import abaqus, code_aster, opensees
 from .points import ContactSet
 
@@ -16,7 +16,6 @@ FORMATS: dict[str, tuple[Callable[[ContactSet, UnitSystem, int], str], tuple[str
     "opensees": (opensees.text, ("damping", "friction")),
     "code_aster": (code_aster.text, ()),
 }
-FIRST_NUMBER = 900001  # above the numbers of most models
 
 
 def contacts_text(

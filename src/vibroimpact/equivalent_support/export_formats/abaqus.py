@@ -8,8 +8,7 @@ it has no DASHPOT1.
 from __future__ import annotations
 
 from ..springs import PointSpring, SpringSet
-from .frames import global_axes, head, numbers, plain_name
-from .unit_system import UnitSystem
+from .frames import UnitSystem, head, local_axes, numbers, plain_name
 
 USE = (
     "Each node is a point of the tube: tie it to your model, or replace its number in the elements"
@@ -21,27 +20,24 @@ def text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
     """Return the keywords. Nodes and elements count from first_number."""
     lines = [*head(springs, unit, "**", USE), "*NODE, NSET=SUPPORT_POINTS"]
     for number, spring in enumerate(springs.springs, first_number):
-        lines.append(f"{number}, {numbers(unit.length * spring.position, '.9E')}")
+        lines.append(f"{number}, {numbers(spring.position, '.9E')}")
     element = first_number
     for number, spring in enumerate(springs.springs, first_number):
         lines.append(f"** {spring.name}")
-        added = _elements(spring, unit, number, element)
+        added = _elements(spring, number, element)
         element += sum(line.startswith("*ELEMENT") for line in added)
         lines += added
     return "\n".join(lines) + "\n"
 
 
-def _elements(spring: PointSpring, unit: UnitSystem, node: int, element: int) -> list[str]:
+def _elements(spring: PointSpring, node: int, element: int) -> list[str]:
     """Return the lines of one point, whose elements count from `element`."""
-    name, axes, lines = plain_name(spring.name).upper(), global_axes(spring.axes), []
-    oriented = ""
-    if axes is None:
-        axes, oriented = (0, 1), f", ORIENTATION=AXES_{name}"
+    name, oriented, lines = plain_name(spring.name).upper(), "", []
+    axes, turned = local_axes(spring.axes)
+    if turned:
+        oriented = f", ORIENTATION=AXES_{name}"
         lines += [f"*ORIENTATION, NAME=AXES_{name}", numbers(spring.axes.ravel(), ".9E")]
-    for kind, letter, values, factor in (
-        ("SPRING", "K", spring.k, unit.stiffness),
-        ("DASHPOT", "C", spring.c, unit.damping),
-    ):
+    for kind, letter, values in (("SPRING", "K", spring.k), ("DASHPOT", "C", spring.c)):
         for axis, value in zip(axes, values, strict=True):
             if value is None:
                 continue
@@ -51,7 +47,7 @@ def _elements(spring: PointSpring, unit: UnitSystem, node: int, element: int) ->
                 f"{element}, {node}",
                 f"*{kind}, ELSET={group}{oriented}",
                 f"{axis + 1}",
-                f"{factor * value:.9E}",
+                f"{value:.9E}",
             ]
             element += 1
     return lines

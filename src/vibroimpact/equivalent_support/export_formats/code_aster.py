@@ -9,8 +9,7 @@ from __future__ import annotations
 
 from ..answer import EquivalentError
 from ..springs import PointSpring, SpringSet
-from .frames import global_axes, head, numbers, plain_name
-from .unit_system import UnitSystem
+from .frames import UnitSystem, head, local_axes, numbers, plain_name
 
 LONGEST_NAME = 24
 USE = (
@@ -33,9 +32,9 @@ def text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
                 f"'{name}' has more than the {LONGEST_NAME} characters of a group of code_aster:"
                 " shorten the support's name"
             )
-        places.append(f"#   {name}: ({numbers(unit.length * spring.position, '.9g')})")
-        discrete += _terms(spring, unit, name)
-        if global_axes(spring.axes) is None:
+        places.append(f"#   {name}: ({numbers(spring.position, '.9g')})")
+        discrete += _terms(spring, name)
+        if local_axes(spring.axes)[1]:
             values = numbers(spring.axes.ravel(), ".12g")
             orientation.append(f"        _F(GROUP_MA='{name}', CARA='VECT_X_Y', VALE=({values})),")
     lines = [*head(springs, unit, "#", USE), *places, "SUPPORTS = AFFE_CARA_ELEM("]
@@ -45,21 +44,16 @@ def text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
     return "\n".join([*lines, ")"]) + "\n"
 
 
-def _terms(spring: PointSpring, unit: UnitSystem, name: str) -> list[str]:
+def _terms(spring: PointSpring, name: str) -> list[str]:
     """Return the _F terms of one point: the stiffness, and the damping if there is one."""
-    axes, frame = global_axes(spring.axes), "GLOBAL"
-    if axes is None:
-        axes, frame = (0, 1), "LOCAL"
-    lines = []
-    for kind, values, factor in (
-        ("K_TR_D_N", spring.k, unit.stiffness),
-        ("A_TR_D_N", spring.c, unit.damping),
-    ):
+    axes, turned = local_axes(spring.axes)
+    frame, lines = "LOCAL" if turned else "GLOBAL", []
+    for kind, values in (("K_TR_D_N", spring.k), ("A_TR_D_N", spring.c)):
         if all(value is None for value in values):
             continue
         terms = [0.0] * 6
         for axis, value in zip(axes, values, strict=True):
-            terms[axis] = factor * (value or 0.0)
+            terms[axis] = value or 0.0
         diagonal = ", ".join(f"{term:.9g}" for term in terms)
         lines += [
             f"        _F(GROUP_MA='{name}', REPERE='{frame}', CARA='{kind}',",

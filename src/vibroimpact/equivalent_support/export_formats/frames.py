@@ -1,17 +1,45 @@
-"""The head of an exported file, and the frames that springs act in."""
+"""The head of an exported file, its units, and the frames that springs act in."""
 
 from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 import numpy as np
 
+from ..answer import EquivalentError
 from ..springs import SpringSet
-from .unit_system import UnitSystem
 
+FIRST_NUMBER = 900001  # of nodes and elements, above the numbers of most models
 WIDTH = 66  # of comment lines: an input line of Nastran holds 72 characters of a comment
 AXIS_TOLERANCE = 1.0e-9  # of a unit vector's component
+
+
+@dataclass(frozen=True)
+class UnitSystem:
+    """A consistent system of units that finite-element models are written in.
+
+    name: in a comment. length: of 1 m. stiffness, damping: of 1 N/m and 1 N s/m.
+    """
+
+    name: str
+    length: float
+    stiffness: float
+    damping: float
+
+
+UNIT_SYSTEMS = {
+    "m": UnitSystem("m, N, kg, s", 1.0, 1.0, 1.0),
+    "mm": UnitSystem("mm, N, t, s", 1.0e3, 1.0e-3, 1.0e-3),
+}
+
+
+def unit_system(name: str) -> UnitSystem:
+    """Return a system by the name of its length. Raises EquivalentError for another name."""
+    if name not in UNIT_SYSTEMS:
+        raise EquivalentError(f"unit '{name}' is none of {', '.join(UNIT_SYSTEMS)}")
+    return UNIT_SYSTEMS[name]
 
 
 def head(
@@ -45,6 +73,12 @@ def global_axes(directions: np.ndarray) -> tuple[int, int] | None:
     first, second = (int(np.argmax(axis)) for axis in axes)
     along = axes[0, first] > 1.0 - AXIS_TOLERANCE and axes[1, second] > 1.0 - AXIS_TOLERANCE
     return (first, second) if along else None
+
+
+def local_axes(directions: np.ndarray) -> tuple[tuple[int, int], bool]:
+    """Return (axes (0 to 2) that two directions (2, 3) are, whether in a frame of their own)."""
+    axes = global_axes(directions)
+    return ((0, 1), True) if axes is None else (axes, False)
 
 
 def numbers(values: Iterable[float], form: str) -> str:

@@ -10,8 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..springs import PointSpring, SpringSet
-from .frames import global_axes, head
-from .unit_system import UnitSystem
+from .frames import UnitSystem, head, local_axes
 
 FIELDS_PER_LINE = 4
 USE = (
@@ -31,23 +30,20 @@ def text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
 
 def _cards(spring: PointSpring, unit: UnitSystem, number: int) -> list[str]:
     """Return the lines of one point."""
-    place = unit.length * spring.position
-    axes, system, lines = global_axes(spring.axes), 0, []
-    if axes is None:
-        axes, system = (0, 1), number
+    place, system, lines = spring.position, 0, []
+    axes, turned = local_axes(spring.axes)
+    if turned:
+        system = number
         along = np.cross(spring.axes[0], spring.axes[1])
         corners = [place, place + unit.length * along, place + unit.length * spring.axes[0]]
         lines += _card("CORD2R", [number, 0, *np.concatenate(corners)])
     lines += _card("GRID", [number, 0, *place, 0])
     lines += _card("CBUSH", [number, number, number, None, None, None, None, system])
     properties: list = [number]
-    for letter, values, factor in (
-        ("K", spring.k, unit.stiffness),
-        ("B", spring.c, unit.damping),
-    ):
+    for letter, values in (("K", spring.k), ("B", spring.c)):
         row: list = [None] * 6
         for axis, value in zip(axes, values, strict=True):
-            row[axis] = None if value is None else factor * value
+            row[axis] = value
         if any(value is not None for value in row):
             properties += [letter, *row]
             if letter == "K":

@@ -10,8 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from ..springs import SpringSet
-from .frames import head, plain_name
-from .unit_system import UnitSystem
+from .frames import UnitSystem, head, plain_name
 
 USE = (
     "Call add_supports(ops, nodes) after your nodes: nodes = {point: tag of your node at its"
@@ -54,12 +53,10 @@ def text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
         "POINTS = {",
     ]
     for spring in springs.springs:
-        position = _tuple(unit.length * value + 0.0 for value in spring.position)
+        position = _tuple(value + 0.0 for value in spring.position)
         axes = ", ".join(_tuple(value + 0.0 for value in axis) for axis in spring.axes)
-        k = _tuple(None if value is None else unit.stiffness * value for value in spring.k)
-        c = _tuple(None if value is None else unit.damping * value for value in spring.c)
-        name = plain_name(spring.name)
-        lines.append(f'    "{name}": ({position}, ({axes}), {k}, {c}),')
+        values = f"{_tuple(spring.k)}, {_tuple(spring.c)}"
+        lines.append(f'    "{plain_name(spring.name)}": ({position}, ({axes}), {values}),')
     return "\n".join([*lines, "}"]) + PROGRAM.format(first=first_number)
 
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from ..answer import EquivalentError
-from ..springs import SpringSet
+from ..springs import PointSpring, SpringSet, shared
 from . import abaqus, code_aster, nastran, opensees, tables
-from .frames import plain_name
-from .unit_system import UnitSystem, unit_system
+from .frames import FIRST_NUMBER, UnitSystem, plain_name, unit_system
 
 FORMATS: dict[str, Callable[[SpringSet, UnitSystem, int], str]] = {
     "nastran": nastran.text,
@@ -18,7 +18,6 @@ FORMATS: dict[str, Callable[[SpringSet, UnitSystem, int], str]] = {
     "csv": tables.csv_text,
     "json": tables.json_text,
 }
-FIRST_NUMBER = 900001  # above the numbers of most models
 
 
 def springs_text(
@@ -41,4 +40,16 @@ def springs_text(
             f"two points are both called {twice[0]} in letters, digits and underscores: rename a"
             " support"
         )
-    return FORMATS[form](springs, unit_system(unit), first_number)
+    system = unit_system(unit)
+    own = tuple(_in_unit(spring, system) for spring in springs.springs)
+    return FORMATS[form](replace(springs, springs=own), system, first_number)
+
+
+def _in_unit(spring: PointSpring, unit: UnitSystem) -> PointSpring:
+    """Return a spring whose position, k and c are in a system of units."""
+    return replace(
+        spring,
+        position=unit.length * spring.position,
+        k=shared(spring.k, unit.stiffness),
+        c=shared(spring.c, unit.damping),
+    )

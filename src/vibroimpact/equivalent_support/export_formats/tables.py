@@ -10,7 +10,7 @@ from typing import Any
 from vibroimpact.io.records import plain_values
 
 from ..springs import SpringSet
-from .unit_system import UnitSystem
+from .frames import UnitSystem
 
 COLUMNS = (
     *("point", "support", "x", "y", "z"),
@@ -18,7 +18,7 @@ COLUMNS = (
 )
 
 
-def rows(springs: SpringSet, unit: UnitSystem) -> list[dict[str, Any]]:
+def rows(springs: SpringSet) -> list[dict[str, Any]]:
     """Return one dict per point and direction that has a spring, with the keys COLUMNS.
 
     c is None if it is not resolved.
@@ -31,10 +31,9 @@ def rows(springs: SpringSet, unit: UnitSystem) -> list[dict[str, Any]]:
             values = (
                 spring.name,
                 spring.support,
-                *(unit.length * float(value) for value in spring.position),
-                *(float(value) for value in axis),
-                unit.stiffness * k,
-                None if c is None else unit.damping * c,
+                *map(float, (*spring.position, *axis)),
+                k,
+                c,
             )
             table.append(dict(zip(COLUMNS, values, strict=True)))
     return table
@@ -49,7 +48,7 @@ def csv_text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
     file.writelines(f"# WARNING: {sentence}.\n" for sentence in springs.warnings)
     writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
     writer.writeheader()
-    writer.writerows(rows(springs, unit))
+    writer.writerows(rows(springs))
     return file.getvalue()
 
 
@@ -60,6 +59,6 @@ def json_text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
         "warnings": springs.warnings,
         "notes": springs.notes,
         "left_out": springs.left_out,
-        "springs": rows(springs, unit),
+        "springs": rows(springs),
     }
     return json.dumps(plain_values(content), indent=1) + "\n"

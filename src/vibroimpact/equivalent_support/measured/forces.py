@@ -88,10 +88,14 @@ def _pushed_alike(
     config: ConfigPart, model: ModalModel, own_drive: np.ndarray, highest_Hz: float
 ) -> np.ndarray:
     """Return (mode, force) one force for each mode that the model's excitation reaches."""
-    groups = config.identification.groups if config.identification is not None else "all"
-    _, modes = reached_supports(replace(model, drive_shapes=own_drive), groups)
+    _, modes = reached_supports(replace(model, drive_shapes=own_drive), groups_of(config))
     modes = modes[model.frequencies[modes] <= PUSHED_BEYOND * highest_Hz]
     return np.eye(model.modes)[:, modes]
+
+
+def groups_of(config: ConfigPart) -> str | tuple[tuple[str, ...], ...]:
+    """Return identification.groups of a configuration, `all` if it has no identification."""
+    return "all" if config.identification is None else config.identification.groups
 
 
 def relative_psd(

@@ -16,7 +16,7 @@ from vibroimpact.identify.spectra.welch import driven_axis
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.reduction.reduced_model import build_model
 
-from .forces import KnownForce, known_force
+from .forces import KnownForce, groups_of, known_force
 
 LEAST_MOTION = 0.02  # of the sensor that the force moves most
 
@@ -56,11 +56,6 @@ def with_own_drive(
     places = {f"place_{number}": tuple(place) for number, place in enumerate(signals.points)}
     own = config.model_copy(update={"points": {**config.points, **places}})
     return model, build_model(own, motion_only=True).drive_shapes
-
-
-def groups_of(config: ConfigPart) -> str | tuple[tuple[str, ...], ...]:
-    """Return identification.groups of a configuration, `all` if it has no identification."""
-    return "all" if config.identification is None else config.identification.groups
 
 
 def measured_tube(

@@ -85,9 +85,6 @@ class FamilyResponse:
     free: (force, output, frequency) m/N, the tube without support.
     residue: (force, output, frequency, contact) m²/N².
     compliance: (frequency, contact) m/N, the eigenvalues mu.
-
-    In the methods `part` selects frequencies (a slice or indices), and `outputs` is a slice of the
-    outputs.
     """
 
     frequency: np.ndarray
@@ -95,39 +92,31 @@ class FamilyResponse:
     residue: np.ndarray
     compliance: np.ndarray
 
-    def frf(
-        self,
-        k: float,
-        c: float,
-        part: slice | np.ndarray = slice(None),
-        outputs: slice = slice(None),
-    ) -> np.ndarray:
+    def of(self, part: slice | np.ndarray, outputs: slice = slice(None)) -> "FamilyResponse":
+        """Return the FamilyResponse of some frequencies (a slice or indices) and outputs."""
+        return FamilyResponse(
+            self.frequency[part],
+            self.free[:, outputs][:, :, part],
+            self.residue[:, outputs][:, :, part],
+            self.compliance[part],
+        )
+
+    def frf(self, k: float, c: float) -> np.ndarray:
         """Return the responses (force, output, frequency) in m/N for k in N/m and c in N s/m."""
-        support = (k + 2j * np.pi * c * self.frequency[part])[:, None]
-        gain = support / (1.0 + support * self.compliance[part])
-        residue = self.residue[:, outputs][:, :, part]
-        return self.free[:, outputs][:, :, part] - (residue * gain).sum(axis=-1)
+        support = (k + 2j * np.pi * c * self.frequency)[:, None]
+        gain = support / (1.0 + support * self.compliance)
+        return self.free - (self.residue * gain).sum(axis=-1)
 
-    def frf_slope(
-        self, k: float, c: float, part: slice | np.ndarray = slice(None)
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def frf_slope(self, k: float, c: float) -> tuple[np.ndarray, np.ndarray]:
         """Return (responses (force, output, frequency), derivatives by s = k + i omega c)."""
-        support = (k + 2j * np.pi * c * self.frequency[part])[:, None]
-        share = 1.0 / (1.0 + support * self.compliance[part])
-        residue = self.residue[:, :, part]
-        return self.free[:, :, part] - (residue * (support * share)).sum(axis=-1), -(
-            residue * share**2
-        ).sum(axis=-1)
+        support = (k + 2j * np.pi * c * self.frequency)[:, None]
+        share = 1.0 / (1.0 + support * self.compliance)
+        response = self.free - (self.residue * (support * share)).sum(axis=-1)
+        return response, -(self.residue * share**2).sum(axis=-1)
 
-    def psd(
-        self,
-        k: float,
-        c: float,
-        part: slice | np.ndarray = slice(None),
-        outputs: slice = slice(None),
-    ) -> np.ndarray:
+    def psd(self, k: float, c: float) -> np.ndarray:
         """Return the displacement PSDs (output, frequency) in m²/N² per PSD of each force."""
-        response = self.frf(k, c, part, outputs)
+        response = self.frf(k, c)
         return (response.real**2 + response.imag**2).sum(axis=0)
 
 

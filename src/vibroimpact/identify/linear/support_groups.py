@@ -97,6 +97,25 @@ def acting_directions(model: ModalModel, point: int) -> dict[str, np.ndarray]:
     }
 
 
+def driven_word(model: ModalModel) -> str:
+    """Return the word for the contacts' direction that the force moves most."""
+    index = driven_direction(model)
+    words = list(acting_directions(model, int(np.argmax(model.contact_weight))))
+    return words[min(index, len(words) - 1)]
+
+
+def driven_direction(model: ModalModel) -> int:
+    """Return 0 or 1: the direction of the contacts that the drive moves most, statically."""
+    driven = np.abs(
+        np.einsum(
+            "mcd,m->cd",
+            model.contact_shapes,
+            model.drive_shapes[:, 0] / np.maximum(model.omega, 1.0) ** 2,
+        )
+    ).sum(axis=0)
+    return int(np.argmax(driven))
+
+
 def _name(vector: np.ndarray, other: str) -> str:
     """Return the global axis that a unit vector (3,) lies along, else another word."""
     axis = int(np.argmax(np.abs(vector)))

@@ -35,8 +35,8 @@ class LevelLines:
     load_rms: RMS of the force.
     frequency: (line,) Hz from 0.
     force, response: (line,) and (channel, line), means over periods.
-    force_noise, noise: (line,) and (channel, line), standard deviations of these means from the
-        scatter between periods; NaN for a single period.
+    noise: (channel, line), standard deviation of the mean response from the scatter between
+        periods; NaN for a single period.
     periods: number of periods averaged.
     """
 
@@ -46,7 +46,6 @@ class LevelLines:
     frequency: np.ndarray
     force: np.ndarray
     response: np.ndarray
-    force_noise: np.ndarray
     noise: np.ndarray
     periods: int
 
@@ -114,8 +113,7 @@ def level_lines(
         frequency=np.fft.rfftfreq(period, 1.0 / sampling_frequency),
         force=driven.mean(axis=0),
         response=lines.mean(axis=1),
-        force_noise=_scatter(driven, 0),
-        noise=_scatter(lines, 1),
+        noise=_scatter(lines),
         periods=count - drop,
     )
 
@@ -173,9 +171,12 @@ def _repeats(force: np.ndarray, period: int) -> bool:
     return np.ptp(last) > 0.0 and np.std(last - before) < REPEATS * np.std(last)
 
 
-def _scatter(lines: np.ndarray, axis: int) -> np.ndarray:
-    """Return the standard deviation of the mean over periods along an axis; NaN for one period."""
-    count = lines.shape[axis]
+def _scatter(lines: np.ndarray) -> np.ndarray:
+    """Return (channel, line) the standard deviation of the mean of lines (channel, period, line).
+
+    It is NaN for one period.
+    """
+    count = lines.shape[1]
     if count < 2:
-        return np.full(np.delete(lines.shape, axis), np.nan)
-    return np.sqrt(np.var(lines, axis=axis, ddof=1) / count)
+        return np.full(lines[:, 0].shape, np.nan)
+    return np.sqrt(np.var(lines, axis=1, ddof=1) / count)

@@ -37,6 +37,11 @@ class SpectralKernel:
         """Return the number of fine points on each side of the kernel's centre."""
         return self.weights.size // 2
 
+    @property
+    def bins(self) -> slice:
+        """Return the slice of fine_index that holds the bins themselves."""
+        return slice(self.half_width, -self.half_width or None, self.oversampling)
+
     def fine_index(self, frequency: np.ndarray) -> np.ndarray:
         """Return (fine,) indices into a grid from 0 Hz in steps of spacing_Hz / oversampling.
 

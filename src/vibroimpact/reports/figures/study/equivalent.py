@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.identify.method_names import method_name
+from vibroimpact.identify.estimate import method_name
 from vibroimpact.reports.figures.plot import Axis, Mark, Panel, Plot, Series, extent, in_rows
 from vibroimpact.reports.figures.style import (
     GAP_COLOURS,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.campaign.file import SYNTHETIC, channel_at, channel_signal
-from vibroimpact.identify.linear.responses import response_psd
+from vibroimpact.identify.linear.family import LinearFamily, driven_modes
 from vibroimpact.identify.spectra.welch import psd_statistics, segment_spectra
 from vibroimpact.reports.evenly_spread import spread_evenly
 from vibroimpact.reports.figures.plot import Axis, Item, Mark, Panel, Plot, Series, in_rows
@@ -169,7 +169,8 @@ def _equivalent_line(model, sensor, measured, band, support):
     kept = inside(frequency, band)
     frequency, mean = frequency[kept], mean[kept]
     shape = model.sensor_shapes[:, [model.sensor_names.index(sensor)]]
-    psd = response_psd(model, k, c, frequency, shape, "acceleration")[0]
+    response = LinearFamily(driven_modes(model), frequency).response(shape)
+    psd = response.psd(k, c)[0] * (2.0 * np.pi * frequency) ** 4
     if force is not None:
         psd = psd * np.interp(frequency, force["low_frequency"].values, force.values)
     name = "linear tube on the equivalent support"

@@ -9,7 +9,7 @@ import numpy as np
 from vibroimpact.excitation.force_files import read_force
 from vibroimpact.excitation.line_force_spectrum import line_force_psd, line_force_rms
 from vibroimpact.geometry.sections import outer_width
-from vibroimpact.identify.linear.responses import psd_family
+from vibroimpact.identify.linear.family import LinearFamily, driven_modes
 from vibroimpact.identify.spectra.welch import driven_axis, psd_statistics, segment_spectra
 
 from .cases_of_gap import paths_of_gap, shown_gap
@@ -147,9 +147,11 @@ def linear_psds(config, model, sensor, stiffness, frequency):
 
     stiffness (k,): N/m per support, bilateral; no damping is added.
     """
-    shape = model.sensor_shapes[:, model.sensor_names.index(sensor)]
-    family = psd_family(model, stiffness, [0.0], frequency, shape)[:, 0]
-    return family * unit_force_psd(config, frequency)
+    shape = model.sensor_shapes[:, [model.sensor_names.index(sensor)]]
+    response = LinearFamily(driven_modes(model), frequency).response(shape)
+    return np.array([response.psd(k, 0.0)[0] for k in stiffness]) * unit_force_psd(
+        config, frequency
+    )
 
 
 def inside(frequency, band):
