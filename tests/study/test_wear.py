@@ -28,7 +28,8 @@ from vibroimpact.study.wear.depth import (
     volume_of,
 )
 from vibroimpact.study.wear.laws import Archard, EdfMz
-from vibroimpact.study.wear.life import wear_life, worn_life
+from vibroimpact.study.wear.life import worn_life
+from vibroimpact.study.wear.of_study import wear_life
 
 ROOT = Path(__file__).parents[2]
 RATES = {4.0: (0.0, 1.0e-5), 20.0: (2.0e-3, 1.0e-3)}  # W at the two supports, by load

@@ -219,13 +219,15 @@ def opened_campaign(path: str | Path) -> xr.Dataset:
     return decode_texts(read_given_dataset(path))
 
 
-def checked_description(path: str | Path) -> xr.Dataset:
+def checked_description(path: str | Path, force_needed: bool = True) -> xr.Dataset:
     """Return the Dataset of a campaign file that keeps the contract, with zeros for all signals.
 
-    It takes no longer for long records. Raises as read_campaign does.
+    It takes no longer for long records. Raises as read_campaign does, whose arguments it has.
     """
     campaign = decode_texts(read_given_dataset(path, described=SERIES))
-    _require(campaign, path)
+    if not force_needed:
+        campaign = with_no_force(campaign)
+    _require(campaign, path, force_needed)
     return campaign
 
 

@@ -200,8 +200,8 @@ def _forward(
         best = max(new, key=lambda each: each.gain)
         for each in sorted(new, key=lambda each: -each.gain):
             log(f"{each.point.name}: {each.gain:.3f}, apart {each.apart:.3f} ± {each.error:.3f}")
-        if best.sure_gain_over(base) < needed_gain(base.worth) or best.sure_gain <= NULL_GAIN:
-            break  # what nothing reaches too is no ground for one more
+        if best.sure_gain_over(base) < needed_gain(base.worth) or best.gain <= NULL_GAIN:
+            break  # what right models reach too is no ground for one more
         if len(best.point.terms) > 1:
             others = _without_first(at, best, nothing, screened[nothing.point.name], log)
             found |= {each.point.name: each for each in others}

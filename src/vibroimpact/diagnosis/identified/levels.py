@@ -149,8 +149,7 @@ def long_record_lines(
         part = frequency[inside], driven[inside], lines[:, inside]
         transient = np.zeros_like(lines)
         transient[:, inside] = _free_decay(modes, *part)
-    quiet, steady = np.zeros(frequency.size), lines - transient
-    return LevelLines(name, split, float(load), frequency, driven, steady, quiet, scatter, 0)
+    return LevelLines(name, split, float(load), frequency, driven, lines - transient, scatter, 0)
 
 
 def quick_length(size: int) -> int:

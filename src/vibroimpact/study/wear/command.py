@@ -69,7 +69,8 @@ def run(options: argparse.Namespace) -> int:
     from vibroimpact.config.problems import ConfigError
     from vibroimpact.io.records import RecordError, write_table
 
-    from .life import NoWear, wear_life
+    from .life import NoWear
+    from .of_study import wear_life
 
     try:
         named = Path("results") / options.study

@@ -8,14 +8,11 @@ import numpy as np
 
 from vibroimpact.config.name_checks import TUBES
 from vibroimpact.config.profiles import has_flat_lands
-from vibroimpact.config.reading import load_config
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.config.supports import Support
 from vibroimpact.config.wear import Wear
 from vibroimpact.geometry.sections import section_kind
 from vibroimpact.io.records import read_record
-from vibroimpact.study.own_results import usable_records
-from vibroimpact.study.run_files import CONFIG_FILE
 
 from .depth import YEAR_S, WornShape, depth_of, volume_of
 from .laws import Archard, EdfMz, WearLaw, published_laws
@@ -59,19 +56,6 @@ def wear_laws(support: Support, wear: Wear) -> Sequence[WearLaw]:
     if support.profile.kind in ("lobes", "broached"):
         return published_laws("quadrifoil")
     return published_laws("bars" if has_flat_lands(support.profile) else "drilled")
-
-
-def wear_life(folder: str | Path, wear: Wear) -> list[WearRow]:
-    """Return the WearRows of a study's folder.
-
-    Raises NoWear, ConfigError, and RecordError if a record is missing or of another configuration
-    than config.yaml there.
-    """
-    folder = Path(folder)
-    if not any((folder / "records").glob("*.nc")):
-        raise NoWear(f"{folder / 'records'}: there are no records: give the results of a study")
-    config = load_config(folder / CONFIG_FILE)
-    return wear_rows(config, usable_records(folder, config), wear)
 
 
 def wear_rows(config: ConfigPart, records: Sequence[str | Path], wear: Wear) -> list[WearRow]:
