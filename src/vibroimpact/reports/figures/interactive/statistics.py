@@ -89,7 +89,8 @@ def stress_plots(
         return []
     limit = Mark("limit", "y", limit_Pa, label="limit", colour=BLACK, line="--", width=1.0)
     names = statistics.sections
-    sections = Axis("section", names=[name.replace("_", " ") for name in names])
+    words = [name.replace("_", " ") for name in names]
+    sections = Axis("section", label="Section", names=words)
     frames: dict[tuple, Panel] = {}
     by_section: dict[tuple, Panel] = {}
     for gap in statistics.gaps:
