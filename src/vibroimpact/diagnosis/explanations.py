@@ -17,8 +17,8 @@ from vibroimpact.effects.effect import Effect, Values
 from vibroimpact.effects.places import with_place
 from vibroimpact.effects.registry import EFFECTS
 from vibroimpact.excitation.force_vectors import MODE_FIELDS
+from vibroimpact.reduction.basis import Basis
 from vibroimpact.reduction.modal_model import ModalModel
-from vibroimpact.reduction.reduced_model import Basis
 
 from .measurement.attached_model import attach, attached_basis
 from .measurement.sensed_motion import displacement_scale

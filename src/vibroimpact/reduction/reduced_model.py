@@ -1,7 +1,6 @@
 """The reduced model of a configuration: structure -> Ritz basis -> ModalModel."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -27,6 +26,7 @@ from vibroimpact.structure.point_structure import PointStructure, build_point_st
 from vibroimpact.structure.rigid_motions import free_rigid_motions
 from vibroimpact.structure.tube import TubeStructure, build_structure
 
+from .basis import Basis
 from .initial_state import initial_state
 from .modal_model import ModalModel
 from .ritz_basis import (
@@ -47,37 +47,6 @@ UNHELD = 1.0e-6  # of the largest modal force: more than this on a mode without 
 ZERO_SQUARE = 1.0e-14  # of the largest squared frequency; below it a mode is rigid-body motion
 
 
-@dataclass(frozen=True, eq=False)
-class Basis:
-    """The basis of a reduction: omega (mode,) rad/s and shapes (dof, mode) of a structure."""
-
-    structure: Any
-    omega: np.ndarray
-    shapes: np.ndarray
-
-    @property
-    def nodes(self) -> np.ndarray | None:
-        """Return the arc lengths (node,) in m of the nodes of a tube, None of another structure."""
-        return getattr(self.structure, "node_arc_length", None)
-
-    def shapes_of(self, variant: Any) -> np.ndarray | None:
-        """Return shapes (dof, vector) that span the motion of a variant on the same mesh, None if
-        they may not. If clamps of its ends give way, the static shapes of forces there are added
-        (R. R. Craig and M. C. C. Bampton, AIAA Journal 6 (1968) 1313-1319).
-        """
-        own = self.structure
-        if self.nodes is None or np.array_equal(own.end_springs, variant.end_springs):
-            return self.shapes if len(self.shapes) == variant.dofs else None
-        place = (variant.transformation.T @ own.transformation).tocsr()  # (dof, dof of the basis)
-        freed = np.flatnonzero(np.diff(place.indptr) == 0)
-        sprung = np.flatnonzero(variant.end_springs)
-        if own.dofs + len(freed) != variant.dofs or not np.array_equal(freed, sprung):
-            return None
-        force = sparse.eye_array(variant.dofs, format="csc")[:, freed].toarray()
-        static = sparse.linalg.splu(variant.stiffness.tocsc()).solve(force)
-        return np.hstack([place @ self.shapes, static / np.abs(static).max(axis=0)])
-
-
 def build_model(
     config: ConfigPart,
     motion_only: bool = False,
@@ -93,8 +62,8 @@ def build_model(
         behind those of record.sensors, its shape a strain per unit amplitude.
     basis: of another configuration, see reduced_basis: the structure is built on its mesh and
         reduced on it; a new basis is made if None, or if it does not span the motion. A variant
-        that differs in point masses, local elements, stops at a point or springs at the ends needs
-        no mesh and no basis of its own.
+        that differs in point masses, local elements, stops at a point or springs in place of clamps
+        needs no mesh and no basis of its own.
 
     Raises ValueError when a support or a named point is more than 5 mm off the tube, a name is
     unknown, no mode is left, round-off hides a stiffness (see _refuse_false_rigid_modes), a preload

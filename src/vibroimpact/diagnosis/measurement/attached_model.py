@@ -14,8 +14,9 @@ from vibroimpact.config.name_checks import TUBES
 from vibroimpact.config.schema import Sensors
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.excitation.force_vectors import turn_axis, turned_direction
+from vibroimpact.reduction.basis import Basis
 from vibroimpact.reduction.modal_model import ModalModel
-from vibroimpact.reduction.reduced_model import Basis, build_model, reduced_basis
+from vibroimpact.reduction.reduced_model import build_model, reduced_basis
 
 from .named_places import point_at
 from .sensed_motion import STRAIN, moving, of_modes
