@@ -77,7 +77,7 @@ def lane_of(
     """Return the run of a model, as a Measuring chain sees it, on a stretch; free: channels without
     a damper.
     """
-    strength = np.where(bench.measures_motion, bench.strength, 0.0)
+    strength = np.where(bench.measures_motion, stretch.hold * bench.strength, 0.0)
     strength[list(free)] = 0.0
     return HeldLane(
         model,
@@ -181,6 +181,14 @@ def holds(bench: Bench, modes: int) -> np.ndarray:
     apart = (lines[1] - lines[0]) * whitening(bench, lines[0])
     power = np.sum(np.abs(apart) ** 2, axis=(1, 2)) / counts(bench, lines[0]).sum(axis=(1, 2))
     return np.nan_to_num(power, nan=np.inf) < LOST
+
+
+def touches(bench: Bench) -> np.ndarray:
+    """Return (stretch,) bool: whether the model as given, held there, touches a support."""
+    runs, _ = _runs(bench, [Point()])
+    first = int(FORGET_S * bench.schedule.sampling_frequency)
+    found = hold(runs, bench.schedule, bench.threads, bench.held_below_Hz).support_force
+    return (found[..., first:] != 0.0).any(axis=(1, 2))
 
 
 def band_edges(lines: int) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -13,7 +13,7 @@ from vibroimpact.integration.contact_convergence import contact_contraction
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .bench import Bench, holds
-from .constants import SCREENED_S, STRENGTH, STRETCH_S
+from .constants import LINEAR_HOLD, SCREENED_S, STRENGTH, STRETCH_S
 from .coordinates import Coordinate, nuisance_coordinates
 from .explanations import Structure, seen
 from .measurement.signals import Signals
@@ -26,6 +26,7 @@ BEGIN, STARTS = 0.2, 3  # start of the first stretch as a share of the record; s
 # Of the steps of free runs: held to a measurement, a run forgets the errors of earlier steps. Not
 # fewer than make the iteration of contact contract by CONTRACTION.
 FEWER_STEPS, CONTRACTION = 0.5, 0.2
+LOWEST = 1.5  # of the lowest load over the gap: records at that load
 INSIDE = (1.3, 0.92)  # of the ends of the held band: the band of the lines
 
 
@@ -35,13 +36,15 @@ class Comparison:
 
     impedance: of the structure at its sensors, N s/m:
     the first frequency over the largest square of a mode shape. band: in which motion is held, Hz.
-    with_lost: whether records that do not hold the model are compared all the same.
+    with_lost: whether records that do not hold the model are compared all the same. linear: records
+    that are held with LINEAR_HOLD of the strength.
     """
 
     signals: Signals
     structure: Structure
     threads: int = 1
     with_lost: bool = False
+    linear: frozenset[int] = frozenset()
     rates: Rates = field(init=False)
     band: tuple[float, float] = field(init=False)
     impedance: float = field(init=False)
@@ -141,6 +144,12 @@ class Comparison:
         last = [(record, self._starts(record)[-1]) for record, _ in self._fitted]
         return self._bench(late or last)
 
+    def lowest(self) -> Bench:
+        """Return the Bench of the first stretch of each record at the lowest load."""
+        size = self.signals.load / np.nan_to_num(self.signals.gap, nan=1.0)
+        records = np.flatnonzero(size <= LOWEST * size.min()).tolist()
+        return self._bench([(each, self._starts(each)[0]) for each in records], SCREENED_S)
+
     def led(self, bench: Bench, lead_s: float) -> tuple[tuple[Stretch, ...], float]:
         """Return (the stretches of a Bench with a lead before each, its duration in s): lead_s, or
         less if a record has less before a stretch.
@@ -159,9 +168,17 @@ class Comparison:
 
     def widened(self) -> Comparison:
         """Return the Comparison that takes in the records that do not hold the model."""
-        wider = replace(self, with_lost=True)
-        object.__setattr__(wider, "_held", self._held)  # found once
-        return wider
+        return self._changed(with_lost=True)
+
+    def with_linear(self, records: Iterable[int]) -> Comparison:
+        """Return the Comparison that holds some records with LINEAR_HOLD of the strength."""
+        return self._changed(linear=frozenset(records))
+
+    def _changed(self, **fields):
+        """Return the Comparison with other fields."""
+        other = replace(self, **fields)
+        object.__setattr__(other, "_held", self._held)  # found once
+        return other
 
     @cached_property
     def _holding(self) -> dict[int, list[float]]:
@@ -216,7 +233,10 @@ class Comparison:
         scheme = self.structure.config.integration.scheme
         return Bench(
             self.structure,
-            self._cut(list(dict.fromkeys(places)), duration_s),
+            tuple(
+                replace(own, hold=LINEAR_HOLD) if own.record in self.linear else own
+                for own in self._cut(list(dict.fromkeys(places)), duration_s)
+            ),
             self.rates.schedule(duration_s, scheme),
             (INSIDE[0] * low, INSIDE[1] * high),
             STRENGTH * self.impedance,

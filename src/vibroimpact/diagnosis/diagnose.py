@@ -49,6 +49,7 @@ from .free_search import far, free_search
 from .identified.identified import PREDICTION, Identified, identified
 from .identified.search import left_and_floor, search_laws
 from .identified.structure_file import model_of
+from .linear_records import with_linear_records
 from .measurement.attached_model import with_channel_points
 from .measurement.signals import Signals, signals_of
 from .measurement.usable import Refused, checks_of_completed, not_testable, usable
@@ -127,6 +128,7 @@ def run_diagnosis(
             found, checks = usable(campaign, config)
             whole = with_channel_points(config, found)
             comparison = Comparison(signals_of(found), Structure(whole, found), threads=threads)
+            comparison = with_linear_records(comparison)
         with costs("free runs"):
             runs = free_runs(comparison.structure, comparison.signals, None)
         with costs("search"):

@@ -43,7 +43,7 @@ def floor_of(comparison: Comparison, best: Fit) -> tuple[float, float]:
     )
     level = mean_log_power(bench, best.lines)
     filtered = comparison.structure.campaign.attrs.get("antialias") != "none"
-    stretches = _played(comparison, bench, played, rng) if filtered else None
+    stretches = played_stretches(comparison, bench, played, rng) if filtered else None
     if stretches is None:
         return level, np.nan
     own = replace(bench, stretches=stretches)
@@ -67,7 +67,7 @@ def _noise(
     return np.fft.irfft(lines, samples, axis=-1)
 
 
-def _played(
+def played_stretches(
     comparison: Comparison, bench: Bench, point: Point, rng: np.random.Generator
 ) -> tuple[Stretch, ...] | None:
     """Return the stretches with the motion of a Point that runs free, None if it fails.

@@ -12,6 +12,7 @@ without a run. Two sensors or fewer leave nothing that could contradict a place.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 
@@ -62,6 +63,7 @@ def demanded_places(
     length = length_m(structure.values)
     if length is None or bench.measures_motion.sum() < FEWEST_SENSORS:
         return []
+    bench = replace(bench, stretches=tuple(replace(own, hold=1.0) for own in bench.stretches))
     lines = holding_lines(bench, [point])[0]
     if not np.isfinite(lines).all():
         return []

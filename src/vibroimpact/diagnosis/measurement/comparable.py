@@ -40,6 +40,7 @@ SHORTEST_RECORD_S = 2.5  # spectra are averages of segments of 2 s; motion is kn
 SHORT = "short records"  # name of the check
 SHOWN = 5.0  # of the first mode of a model: motion that records show at least
 NO_DIRECTION = 1.0e-6  # a shorter vector has no direction
+LIKELY_MM = 10.0  # m: a coordinate larger than those of most structures may be in millimetres
 IDENTIFIED = "model=identified compares without a model"
 
 
@@ -346,7 +347,8 @@ def _place_problems(config, campaign):
     for what, places in kept.items():
         for at in places:
             off = _off(locate, at.point, f"{what}_point[{at.number}]")
-            if off and not _off(locate, 1.0e-3 * at.point, ""):
+            far = np.abs(at.point).max() > LIKELY_MM
+            if off and far and not _off(locate, 1.0e-3 * at.point, ""):
                 off += f"; a thousandth of it is {on}: is it in millimetres? Write metres"
             if off:
                 yield f"{what.replace('_', ' ')} {at.name}: {off}"

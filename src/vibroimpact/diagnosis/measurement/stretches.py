@@ -27,7 +27,7 @@ class Stretch:
     record: its number. start_s: its start. gap: m. load: RMS of the record's first force.
     force (step, force_channel): N. motion (step, channel): m, as displacements; 0 of channels that
     measure no motion. Both begin one step before the start, in steps of the Schedule.
-    moving (channel,) bool: whether a channel moves there.
+    moving (channel,) bool: whether a channel moves there. hold: of the strength of the dampers.
     """
 
     record: int
@@ -37,6 +37,7 @@ class Stretch:
     force: np.ndarray
     motion: np.ndarray
     moving: np.ndarray
+    hold: float = 1.0
 
 
 @dataclass(frozen=True)
