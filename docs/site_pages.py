@@ -50,7 +50,7 @@ def write_generated_pages(app, config):
     folder.mkdir(exist_ok=True)
     keys = _made_by("vibroimpact.config.key_reference")
     _write(folder / "configuration_keys.md", MEANING_IS_WIDE + _meaning_second(keys))
-    _write(folder / "effects.md", _made_by("vibroimpact.effects.catalogue"))
+    _write(folder / "effects.md", _made_by("effects_page"))
     _write(folder / "command_line.md", _command_line())
     _write(folder / "command_line_equivalent.md", _command_line("equivalent"))
     _write(folder / "command_line_supports.md", _command_line("supports"))

@@ -3,8 +3,6 @@
 Commands import what they need when they run, so that `--help` answers at once.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import sys
@@ -78,32 +76,14 @@ def _check(options: argparse.Namespace) -> int:
 
 def _compare(options: argparse.Namespace) -> int:
     """Compare frequency responses with a linear model. Return 1 if it can not be done."""
-    from vibroimpact.campaign.file import CampaignError, read_campaign
-    from vibroimpact.campaign.importing.frf import read_frfs
+    from vibroimpact.campaign.file import CampaignError
     from vibroimpact.config.problems import ConfigError
-    from vibroimpact.config.reading import load_config
-    from vibroimpact.diagnosis.measurement.comparable import comparison_problems
+    from vibroimpact.diagnosis.measurement.linear_comparison import NotComparable, compared
     from vibroimpact.io.records import RecordError
     from vibroimpact.io.signal_files.signals import ImportProblem
-    from vibroimpact.reports.linear_comparison import (
-        NotComparable,
-        comparison_text,
-        described,
-        linear_comparison,
-        lowest_responses,
-    )
 
     try:
-        config = load_config(options.model)
-        if _is_netcdf(options.file):
-            campaign = read_campaign(options.file)
-            spectra = lowest_responses(campaign)
-        else:
-            campaign, spectra = described(read_frfs(options.file))
-        problems = comparison_problems(config, campaign)
-        if problems:
-            raise NotComparable("\n".join(problems))
-        lines = comparison_text(*linear_comparison(config, campaign, spectra))
+        lines = compared(options.file, options.model, _is_netcdf(options.file))
     except NotComparable as problem:
         print(f"{options.file}: {problem}", file=sys.stderr)
         return 1

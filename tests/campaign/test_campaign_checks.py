@@ -9,7 +9,6 @@ import pytest
 
 from vibroimpact.campaign.checks.file_checks import (
     CHECKS,
-    COLUMNS,
     NOT_CHECKED,
     check_campaign,
     check_file,
@@ -18,6 +17,7 @@ from vibroimpact.campaign.checks.file_checks import (
 )
 from vibroimpact.campaign.checks.linear_record import INCOHERENT, mean_coherence
 from vibroimpact.campaign.checks.signal_faults import clipped_share
+from vibroimpact.campaign.checks.stated import COLUMNS
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset, read_campaign
 from vibroimpact.campaign.signals import campaign_signals, transfer
 from vibroimpact.io.records import write_record

@@ -38,7 +38,6 @@ def test_signals_are_in_si_and_cut_to_their_valid_samples():
     stored = made["response"].values[1].astype(float)
     assert signals.valid_samples.tolist() == [SAMPLES, SAMPLES - 100]
     assert signals.factors == pytest.approx([9.80665, 1.0e-3])
-    assert signals.force_factors == pytest.approx([1000.0])
     np.testing.assert_allclose(signals.response[1][0], 9.80665 * stored[0, :-100], rtol=1e-12)
     force = made["force"].values[0, 0].astype(float)
     np.testing.assert_allclose(signals.force[0][0], 1000.0 * force, rtol=1e-12)

@@ -10,8 +10,8 @@ from vibroimpact.campaign.importing.assemble import import_folder
 from vibroimpact.campaign.importing.frf import read_frfs
 from vibroimpact.cli import main
 from vibroimpact.config.reading import load_config
+from vibroimpact.diagnosis.measurement.linear_comparison import described, linear_comparison
 from vibroimpact.io.signal_files.signals import ImportProblem
-from vibroimpact.reports.linear_comparison import described, linear_comparison
 
 pytestmark = UNCLOSED
 
@@ -59,7 +59,7 @@ def model(tmp_path):
 
 
 def compared(path, model):
-    return linear_comparison(load_config(model), *described(read_frfs(path)))
+    return linear_comparison(load_config(model), *described(*read_frfs(path)))
 
 
 @pytest.mark.parametrize(
@@ -94,8 +94,8 @@ def test_a_roving_hammer_is_read_as_a_roving_sensor(tmp_path, model):
         function(h1[1, 0], 2, 1, "m/s^2/N"),
         function(h1[1, 1], 2, 2, "m/s^2/N"),
     )
-    found = read_frfs(roving)
-    assert (found.drive.name, [each.name for each in found.channels]) == ("2:+x", ["1:+x", "2:+x"])
+    *_, channels, drive = read_frfs(roving)
+    assert (drive.name, [each.name for each in channels]) == ("2:+x", ["1:+x", "2:+x"])
     modes, checks = compared(roving, model)
     assert checks == [] and [row["mac"] for row in modes] == pytest.approx([1.0, 1.0], abs=1e-4)
 

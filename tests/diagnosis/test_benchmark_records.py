@@ -123,7 +123,7 @@ def real(name, folder, campaign_of):
 
 def errors_of(found, channel):
     """{level: (linear, identified again, completed)} of a channel of a Diagnosis."""
-    rows = found.identified.prediction(found.chosen)
+    rows = found.grounds.own.prediction(found.grounds.chosen)
     names = ("error_linear", "error_refitted", "error_completed")
     return {
         row["level"]: tuple(row[name] for name in names)
@@ -140,7 +140,7 @@ def test_f16_mounting_softens():
         [3.47, 3.97, 5.19, 6.61, 7.32, 9.17], abs=0.02
     )
     levels = [level for level in own.everything.levels if level.split == "fit"]
-    row = own.setting.ranking["mounting"].row
+    row = own.ranking["mounting"].row
     change = fit_family(base, row, levels, own.everything.band_Hz).k / 1.0e6
     assert change == pytest.approx([0.0, -0.52, -1.1, -1.5], rel=0.15, abs=0.01)
 
@@ -160,7 +160,7 @@ def test_f16_friction_in_the_mounting_is_named():
 @pytest.mark.slow
 def test_published_silverbox_coefficients_are_recovered():
     found = run_diagnosis(*real("silverbox", "silverbox", silverbox_campaign))
-    assert found.identified.linear.base.frequency == pytest.approx([68.58], abs=0.02)
+    assert found.grounds.own.linear.base.frequency == pytest.approx([68.58], abs=0.02)
     values = {
         name: each.value
         for effect in found.verdict.effects

@@ -6,29 +6,28 @@ import numpy as np
 import pytest
 
 from vibroimpact.diagnosis.explanations import Point, Term
-from vibroimpact.diagnosis.free_runs import distance, distances, free_runs, regions, surely_off
+from vibroimpact.diagnosis.free_runs import free_runs
 
 
 @pytest.fixture(scope="module")
 def compared(comparison):
     """The mean of the model's free runs as the measurement, ten times louder in one channel."""
-    signals = comparison.signals
-    runs = free_runs(comparison.structure, signals, None)
+    runs = free_runs(comparison.structure, comparison.signals)
     measured = runs.before.mean(axis=1)
     measured[:, 1] *= 10.0
-    return signals, replace(runs, measured=measured, noise=1.0e-12 + 0.0 * runs.noise)
+    return replace(runs, measured=measured, noise=1.0e-12 + 0.0 * runs.noise)
 
 
 def test_a_channel_ten_times_louder_is_ten_decibels_off(compared):
-    signals, runs = compared
-    rows = regions(runs, signals, 5)
-    assert {row["channel"] for row in rows} == {signals.names[1]}
+    rows = compared.regions(5)
+    assert {row["channel"] for row in rows} == {compared.signals.names[1]}
     assert np.median([row["discrepancy_dB"] for row in rows]) == pytest.approx(10.0, abs=3.0)
 
 
 def test_records_and_channels_are_as_far_off_each_on_its_own(compared):
-    signals, runs = compared
-    rows = distances(runs, signals)
+    signals = compared.signals
+    records, channels = range(len(signals.load)), range(len(signals.names))
+    rows = [compared.distance([record], channel) for record in records for channel in channels]
     away, floor = (
         np.array([row[name] for row in rows], float).reshape(len(signals.load), -1)
         for name in ("before_dB", "floor_dB")
@@ -40,43 +39,35 @@ def test_records_and_channels_are_as_far_off_each_on_its_own(compared):
 
 
 def test_a_run_that_failed_spoils_no_other_record(compared):
-    signals, runs = compared
-    before = runs.before.copy()
+    before = compared.before.copy()
     before[0, 2] = np.nan
-    rows = regions(replace(runs, before=before), signals, 5)
+    rows = replace(compared, before=before).regions(5)
     assert np.isfinite([row["z"] for row in rows]).all()
-    assert signals.record_names[0] not in {row["record"] for row in rows}
+    assert compared.signals.record_names[0] not in {row["record"] for row in rows}
 
 
-def test_a_record_is_off_where_no_run_is_as_far_from_the_others(compared, comparison):
-    signals, runs = compared
-    given = comparison.structure, signals, Point(), [0]
-    assert surely_off(runs, *given) == [0]
-    alike = replace(runs, measured=runs.before[:, 0])
-    assert surely_off(alike, *given) == []
+def test_a_record_is_off_where_no_run_is_as_far_from_the_others(compared):
+    assert 0 in compared.surely_off()
+    assert replace(compared, measured=compared.before[:, 0]).surely_off() == []
 
 
-def test_a_record_is_not_off_where_one_run_whirls_as_it_does(compared, comparison):
+def test_a_record_is_not_off_where_one_run_whirls_as_it_does(compared):
     """What one of four runs does is chance."""
-    signals, runs = compared
-    whirling = runs.after.copy()
+    whirling = compared.after.copy()
     whirling[:, 3] *= 10.0
-    chance = replace(runs, measured=whirling[:, 3].copy(), after=whirling)
-    assert surely_off(chance, comparison.structure, signals, Point(), [0, 1, 2]) == []
+    assert replace(compared, measured=whirling[:, 3].copy(), after=whirling).surely_off() == []
 
 
 def test_nothing_added_closes_nothing(compared):
-    signals, runs = compared
-    row = distance(runs, signals, np.arange(len(signals.load)))
+    row = compared.distance(np.arange(len(compared.signals.load)))
     assert row["before_dB"] == row["after_dB"]
     assert row["closed_fraction"] in (None, pytest.approx(0.0, abs=1e-9))
 
 
 def test_what_the_model_does_not_move_is_compared_with_noise(compared):
     """A channel that a symmetric model leaves at rest is off by its motion over its noise."""
-    signals, runs = compared
-    still = replace(runs, before=0.0 * runs.before, after=0.0 * runs.after)
-    row = distance(still, signals, np.arange(len(signals.load)))
+    still = replace(compared, before=0.0 * compared.before, after=0.0 * compared.after)
+    row = still.distance(np.arange(len(compared.signals.load)))
     assert row["before_dB"] is not None and row["before_dB"] < 200.0
 
 
@@ -85,7 +76,7 @@ def test_a_force_that_was_measured_too_large_is_divided(comparison):
     signals = comparison.signals
     quiet = replace(signals, force=1.0e-3 * signals.force)
     doubled = Point((Term("sensor_gain", "force", (2.0,)),))
-    runs = free_runs(comparison.structure, quiet, doubled)
+    runs = free_runs(comparison.structure, quiet).completed(doubled)
     y = [number for number, name in enumerate(signals.names) if name.endswith("_y")]
     ratio = runs.after[0, 0, y].sum(axis=-1) / runs.before[0, 0, y].sum(axis=-1)
     assert ratio == pytest.approx(0.25, rel=1.0e-3)

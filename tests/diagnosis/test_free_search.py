@@ -11,7 +11,7 @@ from vibroimpact.diagnosis import free_runs as module
 from vibroimpact.diagnosis.coordinates import effect_coordinates
 from vibroimpact.diagnosis.decision import decide
 from vibroimpact.diagnosis.explanations import Point, Structure, Term
-from vibroimpact.diagnosis.free_runs import free_runs, surely_off
+from vibroimpact.diagnosis.free_runs import free_runs
 from vibroimpact.diagnosis.free_search import far, free_search
 from vibroimpact.diagnosis.gauss_newton import Fit
 from vibroimpact.diagnosis.measurement.usable import Refused
@@ -33,7 +33,7 @@ def played(comparison):
     structure, signals = comparison.structure, comparison.signals
     response = module._simulated(structure, signals, HIDDEN)[:, 0]
     played = replace(comparison, signals=replace(signals, response=response))
-    return played, free_runs(structure, played.signals, None)
+    return played, free_runs(structure, played.signals)
 
 
 def searched(*points, nuisances=Point()):
@@ -66,10 +66,8 @@ def test_free_runs_add_an_effect_to_one_that_leaves_spectra_off(played):
     runs = replace(runs, after=runs.before.copy())
     found, after = free_search(comparison, known, named, runs)
     assert named.best.ids == ("gap",) and found.verdict == "named"
-    point, signals = found.best.point, comparison.signals
-    assert point.ids == ["gap", "quadratic_drag"]
-    off = surely_off(after, comparison.structure, signals, point, range(len(signals.load)))
-    assert found.surely_off == bool(off)
+    assert found.best.point.ids == ["gap", "quadratic_drag"]
+    assert found.surely_off == bool(after.surely_off())
     near = replace(named, surely_off=False)
     assert free_search(comparison, known, near, runs) == (near, runs)
 
@@ -94,12 +92,12 @@ def test_nothing_is_sought_where_nuisances_close_spectra(comparison):
     """The mean of free runs is measured: whether a single one whirls is chance."""
     structure, signals = comparison.structure, comparison.signals
     louder = Point(gain=(2.0,) * len(signals.names))
-    given = free_runs(structure, signals, louder)
+    given = free_runs(structure, signals).completed(louder)
     runs = replace(given, measured=given.after.mean(axis=1), after=given.before)
     known = searched(*TRIED, nuisances=louder)
     none = decide(known, 5.0, 5.0)
     found, after = free_search(comparison, known, none, runs)
-    assert far(runs, signals) and not far(after, signals)
+    assert far(runs) and not far(after)
     assert found == none and (after.before == runs.before).all()
     unknown = replace(none, verdict="unknown")
     assert free_search(comparison, known, unknown, runs)[1].after is runs.before

@@ -81,13 +81,17 @@ def test_modes_from_periodic_and_random_records(periodic):
 def test_cubic_spring_is_named_and_located():
     found = judged("cubic")
     verdict = found.verdict
-    assert next(iter(found.identified.setting.ranking)) == "upper-lower"
+    assert next(iter(found.grounds.own.ranking)) == "upper-lower"
     assert (verdict.verdict, verdict.ambiguity_set) == ("named", [["cubic_stiffness"]])
     effect = verdict.effects[0]
     assert effect.location == "upper-lower: between upper and lower"
     value = effect.parameters["cubic_stiffness"]
     assert value.value == pytest.approx(two_masses.CUBIC, rel=0.05) and value.low < value.high
-    held = [row for row in found.identified.prediction(found.chosen) if row["split"] == "holdout"]
+    held = [
+        row
+        for row in found.grounds.own.prediction(found.grounds.chosen)
+        if row["split"] == "holdout"
+    ]
     assert len(held) == 2
     assert all(row["error_completed"] < 0.1 < row["error_linear"] for row in held)
     assert verdict.misfit.holdout.closed_fraction > 0.7
@@ -131,8 +135,8 @@ def test_stated_places_hold_for_sensors_as_recorded():
         additions=[],
     )
     own, _ = identified(linear(turned=True), stated)
-    assert own.setting.places == {"joint": {"upper": -1.0, "lower": 1.0}, "upper": {"upper": -1.0}}
-    terms = tuple(replace(term, values=np.ones(1)) for term in own.setting.candidates)
+    assert own.places == {"joint": {"upper": -1.0, "lower": 1.0}, "upper": {"upper": -1.0}}
+    terms = tuple(replace(term, values=np.ones(1)) for term in own.candidates)
     assert [term.location for term in terms] == [
         "joint: between upper and lower",
         "upper: at upper, to the ground",
@@ -169,7 +173,7 @@ def test_no_law_is_tried_where_no_mode_moves():
         candidates=["cubic_stiffness.joint", "cubic_stiffness.still"],
         additions=[f"quadratic_stiffness.{place}" for place in ("joint", "still", "elsewhere")],
     )
-    setting = identified(both, stated)[0].setting
+    setting = identified(both, stated)[0]
     assert list(setting.ranking) == ["joint"]
     assert [term.place for term in setting.candidates] == ["joint"]
     assert [term.place for term in setting.additions] == ["joint", "elsewhere"]

@@ -88,14 +88,15 @@ def test_law_is_named_and_its_parameters_come_back(law, wanted):
     assert (verdict.verdict, verdict.ambiguity_set) == ("named", [[NAMED[law]]])
     found = {name: each.value for name, each in verdict.effects[0].parameters.items()}
     assert {name: found[name] for name in wanted} == pytest.approx(wanted, rel=0.05)
-    held = [row for row in own.identified.prediction(own.chosen) if row["split"] == "holdout"]
+    rows = own.grounds.own.prediction(own.grounds.chosen)
+    held = [row for row in rows if row["split"] == "holdout"]
     assert all(row["error_completed"] < 0.3 * row["error_linear"] for row in held)
 
 
 def test_the_equivalent_joint_softens():
     """A slider that slips is softer by up to its stick stiffness."""
     own, _ = identified(campaign_of("friction"), STATED)
-    change = own.setting.ranking["joint"].k
+    change = own.ranking["joint"].k
     assert change[-1] == pytest.approx(-joint.STICK, rel=0.35) and change[0] == 0.0
 
 

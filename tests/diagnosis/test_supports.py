@@ -11,7 +11,7 @@ from vibroimpact.cli import main
 from vibroimpact.diagnosis.explanations import Point, Structure
 from vibroimpact.diagnosis.measurement.signals import signals_of
 from vibroimpact.diagnosis.measurement.stretches import stretches_of
-from vibroimpact.diagnosis.whole_records import holder
+from vibroimpact.diagnosis.whole_records import Holder
 from vibroimpact.integration.held_run import HeldLane, hold
 
 RISING = ((0.5, 1.3, "fit"), (4.0, 1.3, "fit"), (12.0, 1.3, "fit"), (35.0, 1.3, "fit"))
@@ -242,7 +242,7 @@ def test_modes_above_the_highest_frequency_are_not_held(measured):
     path, model, _ = measured
     campaign = vi.read_campaign(path).isel(record=[1], channel=slice(0, 7))
     structure = Structure(vi.load_config(model), campaign)
-    holding = holder(structure, signals_of(campaign), Point())
+    holding = Holder(structure, signals_of(campaign), Point())
     schedule = holding.rates.schedule(0.5, "exact")
     (stretch,) = stretches_of(
         holding.signals, [(0, 1.0)], 0.5, holding.band, holding.rates, structure.scale

@@ -9,6 +9,7 @@ from pydantic import ValidationError
 
 from tests.support.discrepancy_results import made_up_verdict
 from vibroimpact.diagnosis import verdict
+from vibroimpact.diagnosis.run_cost import StageCosts
 from vibroimpact.diagnosis.verdict.content import (
     CONCLUSIONS,
     Estimate,
@@ -154,7 +155,7 @@ def test_numbers_that_are_not_finite_are_null():
 
 def test_a_refused_campaign_gives_a_whole_verdict():
     row = {"check": "c", "level": "refuse", "record": None, "channel": None, "message": "No."}
-    verdict = not_testable([row], {}, next_measurement="Record two levels.")
+    verdict = not_testable([row], {}, "Record two levels.", StageCosts().total())
     assert verdict.verdict == "not_testable" and verdict.checks[0].message == "No."
     required = {name for name, field in Verdict.model_fields.items() if field.is_required()}
     assert required <= set(verdict.to_values())

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from vibroimpact.effects.catalogue import markdown
+from docs.effects_page import markdown
 from vibroimpact.effects.effect import SCALES
 from vibroimpact.effects.registry import EFFECTS
 

@@ -17,10 +17,11 @@ from vibroimpact import (
 )
 from vibroimpact.config.yaml_file import read_yaml
 from vibroimpact.equivalent_support.displacement_law import (
+    LAW_FILE,
     DisplacementLaw,
     held_tube,
+    shipped_law,
 )
-from vibroimpact.equivalent_support.law_file import LAW_FILE, shipped_law
 from vibroimpact.identify.linear.responses import frf
 from vibroimpact.io.records import read_table
 from vibroimpact.study.method_agreement import COMPARED

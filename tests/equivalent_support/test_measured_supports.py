@@ -24,7 +24,7 @@ from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.reading import load_config
 from vibroimpact.config.stage_keys import answer_digest
 from vibroimpact.equivalent_support.answer import EquivalentError
-from vibroimpact.equivalent_support.measured.levels import cases_of_records, gaps_of_records
+from vibroimpact.equivalent_support.measured.equivalent_of import cases_of_records, gaps_of_records
 from vibroimpact.equivalent_support.measured.usable import identification_problems
 from vibroimpact.equivalent_support.study_answer import equivalent
 from vibroimpact.io.records import read_table, write_record, write_table

@@ -16,7 +16,7 @@ from vibroimpact.excitation.force_files import (
     read_force,
     require_lasting,
 )
-from vibroimpact.excitation.force_stream import ForceStream, normalised_force
+from vibroimpact.excitation.force_stream import ForceStream
 from vibroimpact.excitation.random_force import (
     ForceError,
     band_limited_noise,
@@ -55,9 +55,8 @@ def test_seeds_are_independent_and_reproducible():
 
 def test_rms_over_the_record_is_exact():
     section = SimpleNamespace(kind="band_limited", band_Hz=BAND)
-    values = normalised_force(
-        section, np.random.default_rng(3), 60000, 51200.0, slice(10000, 50000)
-    )
+    stream = ForceStream(section, np.random.default_rng(3), 60000, 51200.0, slice(10000, 50000))
+    values = stream.values(0, 60000)
     assert np.sqrt(np.mean(values[10000:50000] ** 2)) == pytest.approx(1.0, rel=1e-14)
 
 
@@ -69,15 +68,8 @@ def test_a_streamed_force_is_the_inverse_transform_of_its_lines(samples, rate, b
     section, recorded = SimpleNamespace(kind="band_limited", band_Hz=band), slice(100, samples - 2)
     values = band_limited_noise(np.random.default_rng(8), samples, rate, band)
     expected = values / np.sqrt(np.mean(values[recorded] ** 2))
-    assert (
-        np.max(
-            np.abs(
-                normalised_force(section, np.random.default_rng(8), samples, rate, recorded)
-                - expected
-            )
-        )
-        < 1e-12
-    )
+    stream = ForceStream(section, np.random.default_rng(8), samples, rate, recorded)
+    assert np.max(np.abs(stream.values(0, samples) - expected)) < 1e-12
 
 
 @pytest.mark.parametrize(
@@ -179,13 +171,14 @@ def test_a_measured_force_drives_a_case(tmp_path):
     section = SimpleNamespace(
         kind="measured", file=str(path), variable="force", sampling_frequency_Hz=None
     )
-    force = normalised_force(section, None, 5 * 51200, 51200.0, slice(51200, 4 * 51200))
+    stream = ForceStream(section, None, 5 * 51200, 51200.0, slice(51200, 4 * 51200))
+    force = stream.values(0, 5 * 51200)
     assert np.sqrt(np.mean(force[51200 : 4 * 51200] ** 2)) == pytest.approx(1.0, rel=1e-14)
     assert np.corrcoef(force[::128], values[:2000])[0, 1] > 0.999
     with pytest.raises(
         ForceFileError, match="lasts 10.000 s, but start-up and record need 12.000 s"
     ):
-        normalised_force(section, None, 12 * 51200, 51200.0, slice(0, 51200))
+        ForceStream(section, None, 12 * 51200, 51200.0, slice(0, 51200))
 
 
 def timed_forces(folder, unit, per_second, stated=None):

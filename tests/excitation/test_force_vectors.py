@@ -21,6 +21,12 @@ def place_on(tube):
     return lambda name: tube.displacement_rows(float(name))
 
 
+def force(**changes):
+    """A force along x at 0.5 m."""
+    keys = {"kind": "band_limited", "point": "0.5", "direction": X, "turn_deg": 0.0, "factor": 1.0}
+    return SimpleNamespace(**{**keys, "also": (), "distributed": (), **changes})
+
+
 def test_a_line_load_bends_a_pinned_beam_by_5_over_384():
     tube = straight_tube(
         "pinned-pinned", 8, 2.0
@@ -53,18 +59,8 @@ def test_a_line_load_over_part_of_the_tube_sums_to_its_length():
 
 def test_points_with_signs_add_up():
     tube = straight_tube("clamped-clamped", 10, 2.0)
-    one = SimpleNamespace(
-        kind="band_limited",
-        point="0.5",
-        direction=X,
-        turn_deg=0.0,
-        factor=2.0,
-        also=(),
-        distributed=(),
-    )
-    both = SimpleNamespace(
-        **{**vars(one), "also": (SimpleNamespace(point="1.3", direction=X, factor=-0.6),)}
-    )
+    one = force(factor=2.0)
+    both = force(factor=2.0, also=(SimpleNamespace(point="1.3", direction=X, factor=-0.6),))
     expected = 2.0 * tube.displacement_rows(0.5)[0] - 0.6 * tube.displacement_rows(1.3)[0]
     assert force_vector(tube, place_on(tube), both) == pytest.approx(expected, abs=1e-14)
     assert not np.array_equal(force_vector(tube, place_on(tube), one), expected)
@@ -72,15 +68,7 @@ def test_points_with_signs_add_up():
 
 def test_a_turned_force_is_shared_by_the_axes():
     tube = straight_tube("clamped-clamped", 10, 2.0)
-    turned = SimpleNamespace(
-        kind="band_limited",
-        point="0.5",
-        direction=X,
-        turn_deg=30.0,
-        factor=1.0,
-        also=(),
-        distributed=(),
-    )
+    turned = force(turn_deg=30.0)
     rows = tube.displacement_rows(0.5)
     assert force_vector(tube, place_on(tube), turned) == pytest.approx(
         np.sqrt(0.75) * rows[0] + 0.5 * rows[1], abs=1e-14

@@ -13,11 +13,11 @@ from vibroimpact.reports.figures.flow_sweep import flow_sweep_figures
 from vibroimpact.study.flow_sweep import (
     Equivalent,
     FlowRun,
+    at_velocity,
     equivalent_onset,
     flow_sweep,
     onset_of,
 )
-from vibroimpact.study.flow_turbulence import at_velocity
 
 EXAMPLE = "config/examples/u_tube_flow.yaml"
 QUICK = {

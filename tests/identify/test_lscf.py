@@ -5,12 +5,13 @@ stable from unstable ones.
 import numpy as np
 import pytest
 
-from vibroimpact.identify.half_spectra import half_spectra, lag_window
 from vibroimpact.identify.linear.poles import frequency_of, pole_of
 from vibroimpact.identify.lscf import NormalEquations
 from vibroimpact.identify.operational_pole import (
     PoleSearch,
     cramer_rao_covariance,
+    half_spectra,
+    lag_window,
     operational_pole,
 )
 from vibroimpact.identify.spectra.window_leakage import window_autocorrelation

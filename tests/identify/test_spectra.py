@@ -11,7 +11,6 @@ import xarray as xr
 
 from vibroimpact.identify.spectra.welch import (
     complex_values,
-    cross_spectra,
     effective_averages,
     psd_statistics,
     segment_layout,
@@ -54,18 +53,6 @@ def test_float32_records_stay_float32():
         segment_spectra(signal, RATE, settings(), highest_Hz=60.0).values,
         atol=1.0e-5,
     )
-
-
-def test_cross_spectra_hold_the_delay_between_two_channels():
-    signal = np.random.default_rng(4).standard_normal(100 * 256 + 8)
-    pair = np.stack(
-        [signal[8:], 2.0 * signal[:-8]]
-    )  # the second channel is the first, 8 samples later and twice as large
-    spectra = segment_spectra(pair, RATE, settings())
-    cross = cross_spectra(spectra.values, spectra.values[:1])
-    delay = -np.angle(cross[1, 0, 20:140]) / (2.0 * np.pi * spectra.frequency[20:140])
-    assert np.median(delay) == pytest.approx(8.0 / RATE, rel=0.02)
-    np.testing.assert_allclose(cross[0, 0].real, psd_statistics(spectra.values)[0][0])
 
 
 def test_a_segment_longer_than_the_record_is_an_error():

@@ -13,8 +13,7 @@ from evidence.validation.reference.frequencies import straight_tube
 from tests.support.straight_path import straight_path
 from vibroimpact.config.reading import check_config
 from vibroimpact.excitation.correlated_field import POINTS, field_covariance
-from vibroimpact.excitation.force_channels import force_channels
-from vibroimpact.excitation.force_stream import normalised_force
+from vibroimpact.excitation.force_stream import ForceStream, force_channels
 from vibroimpact.excitation.force_vectors import line_load
 from vibroimpact.excitation.line_force_spectrum import line_force_psd, line_force_rms
 from vibroimpact.excitation.turbulence import drive_shapes, load_of_spectrum
@@ -306,7 +305,8 @@ def test_forces_of_all_channels_act_at_every_step():
 
     def values(excitation, generator):
         last = slice(0, round(rate) + 1)
-        return normalised_force(excitation, generator, round(rate) + 12, rate, last)
+        stream = ForceStream(excitation, generator, round(rate) + 12, rate, last)
+        return stream.values(0, round(rate) + 12)
 
     channels = model.drive_shapes.shape[1]
     assert channels > 8

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 import yaml
 
+from tests.support.matrix_structure import matrix_study
+from tests.support.straight_path import straight_path
 from vibroimpact.config.reading import check_config, load_config
 from vibroimpact.reduction.basis_accuracy import basis_frequency_errors, require_complete
 from vibroimpact.reduction.model_accuracy import (
@@ -45,19 +47,10 @@ def test_the_default_mesh_is_within_its_stated_error():
 def test_a_coarse_straight_mesh_has_the_error_of_a_closed_form(end):
     """Euler-Bernoulli, two and three elements: order 4, which is rated with order 2, 25 % high."""
     section = {"outer_diameter_m": 0.02, "wall_thickness_m": 0.001}
+    material = (2.02e11, 0.3, 8330.0)
+    keys = {"theory": "euler_bernoulli", "mesh": {"elements_per_span": 2}}
     data = smoke()
-    data["structure"] = {
-        "kind": "path",
-        "theory": "euler_bernoulli",
-        "section": section,
-        "material": SMOKE["structure"]["material"],
-        "start_m": [0.0, 0.0, 0.0],
-        "start_direction": [0.0, 0.0, 1.0],
-        "segments": [{"kind": "straight", "length_m": 2.0}],
-        "mesh": {"elements_per_span": 2},
-        "start": {"kind": end},
-        "end": {"kind": end},
-    }
+    data["structure"] = straight_path(2.0, [0.0, 0.0, 1.0], section, material, (end, end), **keys)
     data |= {"supports": [], "points": {"shaker": [0.0, 0.0, 0.8]}}
     data["record"]["sensors"] = {"points": ["shaker"], "directions": ["y"]}
     for key in ("identification", "overlay"):
@@ -129,25 +122,17 @@ def test_rigid_motion_of_a_free_rod_is_no_error():
 def test_reduced_matrices_are_compared_with_the_full_ones(tmp_path):
     size = 500
     chain = 2.0 * np.eye(size) - np.eye(size, k=1) - np.eye(size, k=-1)
-    np.savez(tmp_path / "mass.npz", mass=np.eye(size))
-    np.savez(tmp_path / "stiffness.npz", stiffness=1.0e8 * chain)
-    structure = {
-        "kind": "matrices",
-        "mass": str(tmp_path / "mass.npz"),
-        "stiffness": str(tmp_path / "stiffness.npz"),
-        "points": {"middle": {"x": 250}, "tip": {"x": 499}},
-    }
-    data = {
-        "study": "bench",
-        "structure": structure,
-        "supports": [{"name": "stop", "point": "tip", "stiffness_N_per_m": 1.0e6}],
-        "basis": {"free_modes_to_Hz": 200.0},
-        "excitation": {"kind": "harmonic", "point": "middle", "direction": [1.0, 0.0, 0.0],
-                       "frequency_Hz": 20.0},
-        "grid": {"load_rms_N": [1.0], "gap_m": [1.0e-3], "seeds": 1},
-        "record": {"duration_s": 1.0},
-    }  # fmt: skip
-    rows = model_accuracy(check_config(data, "bench"))
+    force = {"kind": "harmonic", "point": "middle", "direction": [1.0, 0.0, 0.0]}
+    config = matrix_study(
+        tmp_path,
+        np.eye(size),
+        1.0e8 * chain,
+        {"middle": 250, "tip": 499},
+        supports=[{"name": "stop", "point": "tip", "stiffness_N_per_m": 1.0e6}],
+        basis={"free_modes_to_Hz": 200.0},
+        excitation=force | {"frequency_Hz": 20.0},
+    )
+    rows = model_accuracy(config)
     number = np.arange(1, 8)
     exact = 2.0e4 * np.sin(0.5 * np.pi * number / (size + 1)) / (2.0 * np.pi)
     free = [row for row in rows if row["condition"] == "free"]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import linalg, sparse
 
-from vibroimpact.config.reading import check_config
+from tests.support.matrix_structure import matrix_study
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.structure.massless import condense_massless
 from vibroimpact.structure.point_structure import build_point_structure
@@ -18,25 +18,9 @@ TURN = np.linalg.qr(np.random.default_rng(3).normal(size=(5, 5)))[0]
 CASES = {"dofs": (MASS, CHAIN), "combinations": (TURN @ MASS @ TURN.T, TURN @ CHAIN @ TURN.T)}
 
 
-def study(folder, mass, stiffness, named=(2,), **sections):
-    np.savez(folder / "m.npz", mass=mass)
-    np.savez(folder / "k.npz", stiffness=stiffness)
-    return check_config(
-        {
-            "study": "bench",
-            "structure": {
-                "kind": "matrices",
-                "mass": str(folder / "m.npz"),
-                "stiffness": str(folder / "k.npz"),
-                "points": {f"p{dof}": {"x": dof} for dof in named},
-            },
-            "excitation": {"kind": "none"},
-            "grid": {"load_rms_N": [1.0], "gap_m": [1.0e-3], "seeds": 1},
-            "record": {"duration_s": 1.0, "sampling_frequency_Hz": 2048},
-            **sections,
-        },
-        "bench",
-    )
+def study(folder, mass, stiffness, named=(2,)):
+    """The configuration of matrices with a named point at some dofs."""
+    return matrix_study(folder, mass, stiffness, {f"p{dof}": dof for dof in named})
 
 
 def finite_modes(mass, stiffness):

@@ -10,8 +10,9 @@ from vibroimpact.structure.contact.outline import (
     facing_angle,
     hole_outline,
     radial_gap,
+    static_force,
+    support_gap,
 )
-from vibroimpact.structure.contact.static_law import static_force, support_gap
 
 GAP = 3.0e-4
 

@@ -136,21 +136,6 @@ def test_the_outline_is_where_contact_begins(kind):
         assert largest == pytest.approx(0.0, abs=1e-12) or (on_the_edge and largest < 0.0)
 
 
-def area(outline):
-    """Area in m² inside a closed outline."""
-    x, y = outline.T
-    return 0.5 * abs(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]))
-
-
-def test_free_space_of_foils_and_lattice_has_the_known_area():
-    """Regular polygons with the inscribed radius g: 3 sqrt(3) g² and 4 g²."""
-    for kind, expected in (("trefoil", 3.0 * np.sqrt(3.0)), ("lattice", 4.0), ("quadrifoil", 4.0)):
-        outline = free_space(support(LANDS[kind][0]), 1.0e-2)
-        assert area(outline) == pytest.approx(expected * GAP**2, rel=1e-9)
-    circle = free_space(support({"kind": "drilled"}), 1.0e-2)
-    assert area(circle) == pytest.approx(np.pi * GAP**2, rel=1e-3)
-
-
 @pytest.fixture
 def study():
     """The study with a free hand over the keys of its left support."""

@@ -19,6 +19,7 @@ from vibroimpact.io.provenance import config_digest
 from vibroimpact.reports.wear_life import wear_sentences, wear_table
 from vibroimpact.study.cases import all_cases
 from vibroimpact.study.run_files import write_run_files
+from vibroimpact.study.wear.command import wear_life
 from vibroimpact.study.wear.depth import (
     YEAR_S,
     WornShape,
@@ -29,7 +30,6 @@ from vibroimpact.study.wear.depth import (
 )
 from vibroimpact.study.wear.laws import Archard, EdfMz
 from vibroimpact.study.wear.life import worn_life
-from vibroimpact.study.wear.of_study import wear_life
 
 ROOT = Path(__file__).parents[2]
 RATES = {4.0: (0.0, 1.0e-5), 20.0: (2.0e-3, 1.0e-3)}  # W at the two supports, by load

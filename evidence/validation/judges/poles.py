@@ -11,15 +11,18 @@ from evidence.validation.check import Check
 from evidence.validation.prediction.responses import synthesise_records
 from vibroimpact.config.schema import Spectra
 from vibroimpact.excitation.random_force import band_limited_noise
-from vibroimpact.identify.half_spectra import half_spectra, lag_window
 from vibroimpact.identify.linear.modes import contact_matrix, driven_block
 from vibroimpact.identify.linear.poles import first_pole, frequency_of
 from vibroimpact.identify.linear.responses import frf
 from vibroimpact.identify.lscf import NormalEquations
-from vibroimpact.identify.operational_pole import PoleSearch, operational_pole
+from vibroimpact.identify.operational_pole import (
+    PoleSearch,
+    half_spectra,
+    lag_window,
+    operational_pole,
+)
 from vibroimpact.identify.peak import find_peak
 from vibroimpact.identify.spectra.welch import (
-    cross_spectra,
     effective_averages,
     psd_statistics,
     segment_spectra,
@@ -44,6 +47,17 @@ EXACT_FRF = 1.0e-6
 SAME_EQUATIONS = 1.0e-6
 SAME_RECORDS = 3.0  # standard errors of the mean difference, measured over the records
 SAME_PSD = 1.0e-10  # the same formula
+
+
+def cross_spectra(outputs: np.ndarray, references: np.ndarray) -> np.ndarray:
+    """Return the averaged one-sided cross-spectra (output, reference, frequency).
+
+    They are the mean over segments of X_output conj(X_reference).
+
+    outputs: (output, segment, frequency) as in SegmentSpectra.
+    references: (reference, segment, frequency).
+    """
+    return np.einsum("osf,rsf->orf", outputs, references.conj(), optimize=True) / outputs.shape[-2]
 
 
 def sensors_across(model):

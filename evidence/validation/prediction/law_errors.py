@@ -10,7 +10,6 @@ import numpy as np
 
 from vibroimpact.config.reading import check_config
 from vibroimpact.equivalent_support.displacement_law import held_tube
-from vibroimpact.equivalent_support.law_file import REGIONS
 from vibroimpact.identify.estimate import table_rows
 from vibroimpact.identify.identify_case import identify_case
 from vibroimpact.identify.linear.modes import natural_frequencies
@@ -32,6 +31,8 @@ FARTHEST = 2.0  # largest over smallest of the methods that make one observation
 QUANTILES = (0.1, 0.9)
 OBSERVED_K = ("k_identified", "k_secant")
 LOWEST_STIFFNESS = 1.0e2  # N/m
+# Regions of the level that the errors are given for: hardly touching, transition, rattling.
+REGIONS = ((0.5, 1.5), (1.5, 6.0), (6.0, 30.0))
 
 
 def other_tube(config, name, keys):

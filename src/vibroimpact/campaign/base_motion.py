@@ -43,7 +43,8 @@ def base_motion(signals: CampaignSignals) -> list[np.ndarray] | None:
     cosines = _unit(signals.directions) @ _unit(signals.force_directions).T
     cosines = np.nan_to_num(np.where(np.outer(moved, bases), cosines, 0.0))
     velocity = np.array(signals.kinds) == "velocity"
-    low_Hz = _lowest_Hz(signals) if velocity.any() else 0.0
+    # the lower end of the band that the base excites, if a record is long enough to show it
+    low_Hz = (transfer_band(signals) or (NO_BAND_HZ,))[0] if velocity.any() else 0.0
     motions = []
     for force in signals.force:
         own = cosines @ force
@@ -115,11 +116,3 @@ def _unit(directions: np.ndarray) -> np.ndarray:
     """Return (vector, 3) with a length of 1, NaN if it is 0."""
     length = np.linalg.norm(directions, axis=1, keepdims=True)
     return directions / np.where(length > 0.0, length, np.nan)
-
-
-def _lowest_Hz(signals: CampaignSignals) -> float:
-    """Return the lower end in Hz of the band that the base excites, NO_BAND_HZ if no record is long
-    enough to show it.
-    """
-    band = transfer_band(signals)
-    return NO_BAND_HZ if band is None else band[0]

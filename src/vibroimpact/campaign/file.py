@@ -115,11 +115,14 @@ def campaign_dataset(
     """
     data: dict[str, tuple] = {}
     if drives:
-        load = _loads(np.asarray(force), drives[0], sampling_frequency, band_of(attributes))
-        units = {"units": drives[0].units} if len(drives) == 1 else {}
+        first, band = drives[0], band_of(attributes)
+        kind = BASE if first.kind == BASE else "excitation"
+        factor = _factor(f"force channel {first.name}", first.units, kind)
+        load = [factor * load_of(each[0], sampling_frequency, band) for each in np.asarray(force)]
+        units = {"units": first.units} if len(drives) == 1 else {}
         data = {
             "force": (DIMENSIONS["force"], np.asarray(force, np.float32), units),
-            "load_rms": ("record", load, {"units": "m s-2" if drives[0].kind == BASE else "N"}),
+            "load_rms": ("record", load, {"units": "m s-2" if first.kind == BASE else "N"}),
             **_channel_variables("force_channel", drives),
         }
     times = np.arange(np.shape(response)[-1]) / sampling_frequency
@@ -127,21 +130,14 @@ def campaign_dataset(
         "response": (DIMENSIONS["response"], np.asarray(response, np.float32)),
         "time": ("time", times, {"units": "s"}),
         **_channel_variables("channel", channels),
-        **_level_variables(levels),
+        "record_name": ("record", np.array([level.name for level in levels], dtype=object)),
+        "gap": ("record", np.array([level.gap_m for level in levels], float), {"units": "m"}),
+        "repeat": ("record", np.array([level.repeat for level in levels], np.int64)),
+        "split": ("record", np.array([level.split for level in levels], dtype=object)),
         **{name: (DIMENSIONS[name], np.asarray(own)) for name, own in (optional or {}).items()},
     }
     stated = {**DEFAULTS, "antialias": "fir80", **attributes}
     return xr.Dataset(data, attrs={"sampling_frequency": float(sampling_frequency), **stated})
-
-
-def _loads(force, drive, sampling_frequency, band):
-    """Return (record,) the RMS of the first force channel, whose Channel is `drive`, in SI units.
-
-    force (record, force_channel, sample).
-    """
-    kind = BASE if drive.kind == BASE else "excitation"
-    factor = _factor(f"force channel {drive.name}", drive.units, kind)
-    return factor * np.array([load_of(each[0], sampling_frequency, band) for each in force])
 
 
 def _channel_variables(prefix, channels):
@@ -169,19 +165,9 @@ def _channel_variables(prefix, channels):
     }
 
 
-def _level_variables(levels):
-    """Return {name: variable} of the names, gaps, repeats and splits of Levels."""
-    return {
-        "record_name": ("record", np.array([level.name for level in levels], dtype=object)),
-        "gap": ("record", np.array([level.gap_m for level in levels], float), {"units": "m"}),
-        "repeat": ("record", np.array([level.repeat for level in levels], np.int64)),
-        "split": ("record", np.array([level.split for level in levels], dtype=object)),
-    }
-
-
 def write_campaign(campaign: xr.Dataset, path: str | Path) -> None:
     """Write a campaign Dataset. Raises CampaignError when it breaks the contract."""
-    _require(with_no_force(campaign), path, force_needed="force" in campaign)
+    _sound(campaign, path, force_needed="force" in campaign)
     campaign = campaign.copy()
     for name in set(ABOUT) & {str(name) for name in campaign.variables}:
         units, long_name = ABOUT[name]
@@ -204,19 +190,16 @@ def read_campaign(path: str | Path, force_needed: bool = True) -> xr.Dataset:
     Raises RecordError when there is no such file or it is not netCDF, CampaignError with every
     breach of the contract.
     """
-    campaign = opened_campaign(path)
-    if not force_needed:
-        campaign = with_no_force(campaign)
-    _require(campaign, path, force_needed)
-    return fill_missing(campaign)
+    return fill_missing(_sound(opened_campaign(path), path, force_needed))
 
 
-def opened_campaign(path: str | Path) -> xr.Dataset:
+def opened_campaign(path: str | Path, described: Sequence[str] = ()) -> xr.Dataset:
     """Return the Dataset of a campaign file of any state, texts decoded, nothing filled in.
 
+    described: variables that zeros stand for.
     Raises RecordError when it can not be read as netCDF.
     """
-    return decode_texts(read_given_dataset(path))
+    return decode_texts(read_given_dataset(path, described))
 
 
 def checked_description(path: str | Path, force_needed: bool = True) -> xr.Dataset:
@@ -224,11 +207,7 @@ def checked_description(path: str | Path, force_needed: bool = True) -> xr.Datas
 
     It takes no longer for long records. Raises as read_campaign does, whose arguments it has.
     """
-    campaign = decode_texts(read_given_dataset(path, described=SERIES))
-    if not force_needed:
-        campaign = with_no_force(campaign)
-    _require(campaign, path, force_needed)
-    return campaign
+    return _sound(opened_campaign(path, SERIES), path, force_needed)
 
 
 def with_no_force(campaign: xr.Dataset) -> xr.Dataset:
@@ -355,11 +334,15 @@ def _last_finite(campaign: xr.Dataset) -> np.ndarray:
     return np.where(some.any(axis=1), samples - np.argmax(some[:, ::-1], axis=1), 0)
 
 
-def _require(campaign: xr.Dataset, path: str | Path, force_needed: bool = True) -> None:
-    """Raise CampaignError unless the Dataset keeps the contract."""
+def _sound(campaign: xr.Dataset, path: str | Path, force_needed: bool) -> xr.Dataset:
+    """Return the Dataset, one without a force as with_no_force does unless it is needed. Raises
+    CampaignError unless it keeps the contract.
+    """
+    campaign = campaign if force_needed else with_no_force(campaign)
     problems = [*contract_problems(campaign, force_needed)]
     if problems:
         raise CampaignError("\n".join(f"{path}: {problem}" for problem in problems))
+    return campaign
 
 
 def channel_at(campaign: xr.Dataset, position: ArrayLike, direction: ArrayLike, kind: str) -> int:
@@ -422,15 +405,13 @@ def channel_factor(campaign: xr.Dataset, channel: int) -> float:
     return _factor(f"channel {name}", units, kind)
 
 
-def force_signal(campaign: xr.Dataset, record: int, force_channel: int = 0) -> np.ndarray:
-    """Return (time,) the valid samples of a force of a record, in N (V if volts were recorded,
-    m/s² for an acceleration of the base).
+def force_signal(campaign: xr.Dataset, record: int) -> np.ndarray:
+    """Return (time,) the valid samples of force channel 0 of a record, in N (V if volts were
+    recorded, m/s² for an acceleration of the base).
 
     Raises CampaignError for an unknown unit.
     """
-    return measured_values(campaign, "force", record)[force_channel] * force_factor(
-        campaign, force_channel
-    )
+    return measured_values(campaign, "force", record)[0] * force_factor(campaign, 0)
 
 
 def measured_values(campaign: xr.Dataset, name: str, record: int) -> np.ndarray:

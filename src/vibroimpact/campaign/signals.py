@@ -65,7 +65,7 @@ class CampaignSignals:
     starts_at_rest: whether records begin at rest.
     force, response: an array per record, (force_channel, sample) and (channel, sample), cut to its
     valid samples.
-    factors (channel,), force_factors (force_channel,): SI units per stored unit.
+    factors (channel,): SI units per stored unit.
     unit_faults, force_unit_faults: {channel index: sentence} of signals whose unit can not be used;
     they stay in their stored unit, with a factor of 1.
     stated_band: Hz, the band that the file states, or None.
@@ -89,7 +89,6 @@ class CampaignSignals:
     force: list[np.ndarray]
     response: list[np.ndarray]
     factors: np.ndarray
-    force_factors: np.ndarray
     unit_faults: dict[int, str]
     force_unit_faults: dict[int, str]
     stated_band: tuple[float, float] | None = None
@@ -144,7 +143,7 @@ class CampaignSignals:
 
 
 def campaign_signals(campaign: xr.Dataset) -> CampaignSignals:
-    """Return the CampaignSignals of a campaign Dataset that keeps the contract."""
+    """Return the CampaignSignals of a campaign Dataset that keeps the contract, filled in."""
     factors, faults = _factors(campaign, campaign.sizes["channel"], channel_factor)
     force_factors, force_faults = _factors(campaign, campaign.sizes["force_channel"], force_factor)
     records, rate = range(campaign.sizes["record"]), float(campaign.attrs["sampling_frequency"])
@@ -154,9 +153,12 @@ def campaign_signals(campaign: xr.Dataset) -> CampaignSignals:
     response = [
         measured_values(campaign, "response", record) * factors[:, None] for record in records
     ]
+    band = band_of(campaign.attrs)
+    found = [load_of(each[0], rate, band) if each.size else np.nan for each in force]
+    loads = zip(campaign["load_rms"].values.astype(float).tolist(), found, strict=True)
     texts = {
         name: [str(value) for value in campaign[name].values]
-        for name in ("record_name", "channel_name", "force_channel_name", "channel_kind")
+        for name in ("record_name", "channel_name", "force_channel_name", "channel_kind", "split")
     }
     return CampaignSignals(
         rate=rate,
@@ -165,19 +167,9 @@ def campaign_signals(campaign: xr.Dataset) -> CampaignSignals:
         forces=texts["force_channel_name"],
         kinds=texts["channel_kind"],
         force_kinds=force_kinds(campaign),
-        load_rms=_loads(
-            campaign["load_rms"].values.astype(float),
-            [
-                load_of(each[0], rate, band_of(campaign.attrs)) if each.size else np.nan
-                for each in force
-            ],
-        ),
+        load_rms=np.array([load if is_load(load, own) else own for load, own in loads]),
         gap=campaign["gap"].values.astype(float),
-        splits=(
-            [str(value) for value in campaign["split"].values]
-            if "split" in campaign
-            else ["fit"] * len(records)
-        ),
+        splits=texts["split"],
         points=campaign["channel_point"].values.astype(float),
         directions=campaign["channel_direction"].values.astype(float),
         force_directions=campaign["force_channel_direction"].values.astype(float),
@@ -187,10 +179,9 @@ def campaign_signals(campaign: xr.Dataset) -> CampaignSignals:
         force=force,
         response=response,
         factors=factors,
-        force_factors=force_factors,
         unit_faults=faults,
         force_unit_faults=force_faults,
-        stated_band=band_of(campaign.attrs),
+        stated_band=band,
     )
 
 
@@ -209,12 +200,6 @@ def blows(force: np.ndarray) -> int:
 def is_load(stated: float, found: float) -> bool:
     """Return whether a stated load is that of the force, if that is known."""
     return not np.isfinite(found) or abs(found - stated) <= LOAD_TOLERANCE * max(found, 1e-300)
-
-
-def _loads(stated: np.ndarray, found: list[float]) -> np.ndarray:
-    """Return (record,) the stated loads, those of the force if they are not that."""
-    pairs = zip(stated.tolist(), found, strict=True)
-    return np.array([load if is_load(load, own) else own for load, own in pairs])
 
 
 def common_period(forces: list[np.ndarray]) -> int:

@@ -44,6 +44,7 @@ class Range:
     too_high: str = ""
 
 
+METRE = ("metre", "meter", "metres", "meters")
 METRES = "is it in millimetres? Write metres"
 GAP = "give the radial clearance in m, NaN if there is none"
 CLEARANCE = Range(0.0, 1.0, "m", GAP, unknown=True, too_high=METRES)
@@ -71,7 +72,12 @@ def stated_value_problems(campaign: xr.Dataset, sound: set[str]) -> Iterator[str
     yield from _attribute_problems(campaign)
     for name, allowed in RANGES.items():
         if name in sound:
-            yield from _unit_problem(campaign, name, allowed.unit)
+            unit, stated = allowed.unit, campaign[name].attrs.get("units", "")
+            if unit and str(stated).strip() not in ("", unit, *METRE):
+                yield (
+                    f"'{name}' has the attribute units = '{stated}': write its values and units in"
+                    f" {unit}"
+                )
             yield from _range_problem(name, campaign[name].values, allowed)
     if "valid_samples" in sound:
         samples = campaign.sizes["time"]
@@ -123,13 +129,6 @@ def _range_problem(name: str, values: np.ndarray, allowed: Range) -> Iterator[st
     yield f"{name}{index} = {value:g}{unit} {what}{more}: {remedy}"
 
 
-def _unit_problem(campaign: xr.Dataset, name: str, unit: str) -> Iterator[str]:
-    """Yield a sentence if a variable states another unit than the one it is read in."""
-    stated = campaign[name].attrs.get("units", "")
-    if unit and str(stated).strip() not in ("", unit, "metre", "meter", "metres", "meters"):
-        yield f"'{name}' has the attribute units = '{stated}': write its values and units in {unit}"
-
-
 def _name_problems(campaign: xr.Dataset, sound: set[str]) -> Iterator[str]:
     """Yield a sentence for every name that is empty or stands twice.
 
@@ -174,7 +173,9 @@ def _attribute_problems(campaign: xr.Dataset) -> Iterator[str]:
             f" {samples}, or 0 if it does not repeat",
         )
     if "band_Hz" in attributes:
-        low, high = _pair(attributes["band_Hz"])
+        band = attributes["band_Hz"]
+        pair = not isinstance(band, str) and np.shape(band) == (2,)
+        low, high = map(number_of, band if pair else (np.nan, np.nan))
         if not 0.0 <= low < high or high > 0.5 * rate:
             yield wrong(
                 "band_Hz",
@@ -197,13 +198,6 @@ def number_of(value: Any) -> float:
     if isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool):
         return float(value)
     return float("nan")
-
-
-def _pair(value: Any) -> tuple[float, float]:
-    """Return the two real numbers of an attribute; NaN for anything else."""
-    if not isinstance(value, str) and np.shape(value) == (2,):
-        return number_of(value[0]), number_of(value[1])
-    return float("nan"), float("nan")
 
 
 def _shown(value: Any) -> str:

@@ -44,6 +44,7 @@ def cross_problems(sections: Mapping[str, Any]) -> list[Problem]:
     """
     given = {name: section for name, section in sections.items() if section is not None}
     given |= _parts(given)
+    given["given"] = given
     problems: list[Problem] = []
     for check in CHECKS:
         wanted = inspect.signature(check).parameters
@@ -60,7 +61,8 @@ def _parts(sections: Mapping[str, Any]) -> dict[str, Any]:
 
     tube: the structure if it is a tube. line: its centreline, if its bends have directions.
     other: the structure if it is none. names: of the points that the structure has.
-    turbulence: the excitation if it is that.
+    turbulence: the excitation if it is that. A check of several sections, as far as there are any,
+    reads `given`: all of them with these parts.
     """
     structure, force = sections.get("structure"), sections.get("excitation")
     parts: dict[str, Any] = {}
@@ -311,16 +313,11 @@ CHECKS = (
     geometry_checks.offsets,
     profile_checks.gaps_of_supports,
     profile_checks.preloads,
-    profile_checks.normals_on_a_tube,
-    profile_checks.normals_at_points,
+    profile_checks.normals,
     names.names_twice,
     _repeated_values,
     _number_of_cases,
-    names.points_of_force,
-    names.points_of_sensors,
-    names.points_of_supports,
-    names.points_of_elements,
-    names.points_of_masses,
+    names.named_points,
     names.drag_partners,
     names.identified_points,
     names.identification_needs,

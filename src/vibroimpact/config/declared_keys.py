@@ -152,17 +152,12 @@ def _metadata(annotation: Any) -> list[Any]:
 def _range(annotation: Any) -> str:
     """Return the bounds of the numbers in a type, such as "> 0, ≤ 2"."""
     bounds = [
-        f"{kind.shown} {_number(bound)}"
+        f"{kind.shown} {bound:g}".replace("e+0", "e").replace("e+", "e")
         for each in _metadata(annotation)
         if isinstance(each, Range)
         for kind, bound in each.bounds()
     ]
     return ", ".join(dict.fromkeys(bounds))
-
-
-def _number(bound: float) -> str:
-    """Return a bound in few digits."""
-    return f"{bound:g}".replace("e+0", "e").replace("e+", "e")
 
 
 WORDS = {float: "number", int: "whole number", bool: "true or false", str: "text"}

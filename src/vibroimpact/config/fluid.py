@@ -4,6 +4,7 @@ Density and viscosity of a named fluid are filled in when the configuration is r
 configuration as it runs holds the numbers.
 """
 
+from functools import partial
 from typing import Annotated, Literal
 
 from pydantic import Field, ValidationInfo, field_validator
@@ -112,11 +113,9 @@ class FluidInside(Section):
     from_m: Position | None = Field(None, description=FROM, examples=[[-0.3, 0.0, 0.0]])
     to_m: Position | None = Field(None, description=TO, examples=[[-0.3, 0.0, 0.5]])
 
-    @field_validator("temperature_C")
-    @classmethod
-    def _temperature(cls, value: float | None, info: ValidationInfo) -> float | None:
-        """Return the temperature of the named fluid, within its known range."""
-        return named_temperature(value, info, fluid_properties)
+    _temperature = field_validator("temperature_C")(
+        partial(named_temperature, properties=fluid_properties)
+    )
 
     @field_validator("density_kg_per_m3")
     @classmethod

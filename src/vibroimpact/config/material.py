@@ -4,6 +4,7 @@ A value that is left out becomes that of the named metal when the configuration 
 configuration as it runs holds the numbers.
 """
 
+from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from pydantic import ConfigDict, Field, ValidationInfo, field_validator
@@ -88,14 +89,9 @@ class Material(Section):
         examples=[8330.0],
     )
 
-    @field_validator("temperature_C")
-    @classmethod
-    def _temperature(cls, value: float | None, info: ValidationInfo) -> float | None:
-        """Return the temperature of the named metal, within its known range."""
-        return named_temperature(value, info, solid_properties)
-
-    @field_validator("young_modulus_Pa", "poisson_ratio", "density_kg_per_m3")
-    @classmethod
-    def _property(cls, value: float | None, info: ValidationInfo) -> float | None:
-        """Return the value given, or that of the named metal."""
-        return given_or_named(value, info, solid_properties)
+    _temperature = field_validator("temperature_C")(
+        partial(named_temperature, properties=solid_properties)
+    )
+    _property = field_validator("young_modulus_Pa", "poisson_ratio", "density_kg_per_m3")(
+        partial(given_or_named, properties=solid_properties)
+    )

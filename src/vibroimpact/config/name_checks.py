@@ -1,7 +1,7 @@
 """The checks of names: every point, element and support that a configuration names is there."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -33,43 +33,11 @@ def drag_partners(elements: ConfigPart) -> Problems:
             )
 
 
-def points_of_force(names: Sequence[str], excitation: ConfigPart) -> Problems:
-    """Yield a problem unless points that the excitation names are there."""
-    yield from _unknown(_force_points(excitation), names)
-
-
-def points_of_sensors(names: Sequence[str], record: ConfigPart) -> Problems:
-    """Yield a problem unless points that the sensors name are there."""
-    named = enumerate(record.sensors.points if record.sensors else ())
-    yield from _unknown(((f"record.sensors.points[{i}]", name) for i, name in named), names)
-
-
-def points_of_supports(names: Sequence[str], supports: ConfigPart) -> Problems:
-    """Yield a problem unless points that supports name are there."""
-    yield from _unknown(_attached_points("supports", supports), names)
-
-
-def points_of_elements(names: Sequence[str], elements: ConfigPart) -> Problems:
-    """Yield a problem unless points that elements name are there."""
-    yield from _unknown(_attached_points("elements", elements), names)
-
-
-def points_of_masses(names: Sequence[str], masses: ConfigPart) -> Problems:
-    """Yield a problem unless points that masses name are there."""
-    yield from _unknown(_attached_points("masses", masses), names)
-
-
-def _attached_points(part: str, entries: Sequence[ConfigPart]) -> Iterator[tuple[str, str]]:
-    """Yield (place, point) of everything that is attached to a point, or between two."""
-    for i, entry in enumerate(entries):
-        for key in ("point", "other_point"):
-            if getattr(entry, key, None) is not None:
-                yield f"{part}[{i}].{key}", getattr(entry, key)
-
-
-def _unknown(named: Iterable[tuple[str, str]], names: Sequence[str]) -> Problems:
-    """Yield a problem for each (place, point) that is not there."""
-    for place, name in named:
+def named_points(names: Sequence[str], given: Mapping[str, ConfigPart]) -> Problems:
+    """Yield a problem unless points that force, sensors, supports, elements and masses name are
+    there.
+    """
+    for place, name in _points_of(given):
         if name not in names:
             remedy = near_or_known(name, names) if names else "points is empty, add it there"
             yield Problem(place, f"is not one of the named points: {remedy}")
@@ -86,15 +54,25 @@ def names_of_points(structure: ConfigPart, points: Mapping[str, Sequence[float]]
     return list(points)
 
 
-def _force_points(excitation: ConfigPart) -> Iterator[tuple[str, str]]:
-    """Yield (place, point) of everything that the excitation names."""
-    if hasattr(excitation, "point"):
-        yield "excitation.point", excitation.point
+def _points_of(given: Mapping[str, ConfigPart]) -> Iterator[tuple[str, str]]:
+    """Yield (place, point) of everything that sections name."""
+    force, sensors = given.get("excitation"), getattr(given.get("record"), "sensors", None)
+    if (point := getattr(force, "point", None)) is not None:
+        yield "excitation.point", point
     for key in ("also", "constant"):
-        yield from (
-            (f"excitation.{key}[{i}].point", entry.point)
-            for i, entry in enumerate(getattr(excitation, key, ()))
-        )
+        yield from _attached_points(f"excitation.{key}", getattr(force, key, ()))
+    for i, name in enumerate(sensors.points if sensors else ()):
+        yield f"record.sensors.points[{i}]", name
+    for part in ("supports", "elements", "masses"):
+        yield from _attached_points(part, given.get(part, ()))
+
+
+def _attached_points(part: str, entries: Sequence[ConfigPart]) -> Iterator[tuple[str, str]]:
+    """Yield (place, point) of everything that is attached to a point, or between two."""
+    for i, entry in enumerate(entries):
+        for key in ("point", "other_point"):
+            if getattr(entry, key, None) is not None:
+                yield f"{part}[{i}].{key}", getattr(entry, key)
 
 
 def identified_points(record: ConfigPart, identification: ConfigPart) -> Problems:

@@ -46,7 +46,7 @@ def sentence(error: Mapping[str, Any], data: Any, whole: type[Section]) -> str:
 
     whole: the section that it states.
     """
-    found = _resolve(error["loc"], data, whole)
+    found = place_in(error["loc"], data, whole)
     path, value = found.path, found.value
     place = _place(path)
     if error["type"] == UNKNOWN:
@@ -117,11 +117,6 @@ def _kinds(sections: tuple[type[Section], ...]) -> str:
     return ", ".join(kind for section in sections if (kind := kind_of(section)))
 
 
-def path_in(location: tuple, data: Any, whole: type[Section]) -> list:
-    """Return the path of keys and indices that a pydantic location means in `data`."""
-    return _resolve(location, data, whole).path
-
-
 def _place(path: list) -> str:
     """Return a path of keys and indices as a reader of YAML would write it: grid.gap_m[2]."""
     return "".join(
@@ -130,7 +125,7 @@ def _place(path: list) -> str:
 
 
 @dataclass(frozen=True)
-class _Place:
+class Place:
     """A place of a configuration.
 
     path: keys and indices. value: the value there, None if there is none.
@@ -144,14 +139,7 @@ class _Place:
     sections: tuple[type[Section], ...]
 
 
-def _holds(data: Any, part: Any) -> bool:
-    """Return whether data hold a key, or an index."""
-    if isinstance(data, (list, tuple)):
-        return isinstance(part, int) and part < len(data)
-    return isinstance(data, dict) and part in data
-
-
-def _resolve(location: tuple, data: Any, whole: type[Section]) -> _Place:
+def place_in(location: tuple, data: Any, whole: type[Section]) -> Place:
     """Return the place that a pydantic location means in `data`.
 
     Pydantic's location also names the member of a union. Such a part is not a key of the data and
@@ -162,7 +150,10 @@ def _resolve(location: tuple, data: Any, whole: type[Section]) -> _Place:
     path: list = []
     keys: Mapping[str, FieldInfo] = whole.model_fields
     for index, part in enumerate(location):
-        in_data = _holds(data, part)
+        if isinstance(data, (list, tuple)):
+            in_data = isinstance(part, int) and part < len(data)
+        else:
+            in_data = isinstance(data, dict) and part in data
         last = index == len(location) - 1
         if part == "[key]" or (not in_data and (not last or part in ("one", "list"))):
             annotation = next((m for m in members(annotation) if kind_of(m) == part), annotation)
@@ -175,4 +166,4 @@ def _resolve(location: tuple, data: Any, whole: type[Section]) -> _Place:
             annotation = keys[part].annotation if part in keys else None
         sections = sections_in(annotation)
         model = sections[0] if len(sections) == 1 else None
-    return _Place(path, data, keys, sections_in(annotation))
+    return Place(path, data, keys, sections_in(annotation))

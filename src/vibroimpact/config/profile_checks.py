@@ -1,7 +1,8 @@
 """The checks of the profiles of supports: allowed contact and preload, places of their lands."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -48,18 +49,11 @@ def preloads(supports: ConfigPart) -> Problems:
             )
 
 
-def normals_on_a_tube(line: Centreline, supports: ConfigPart) -> Problems:
-    """Yield a problem unless a profile has one direction, across the tube."""
-    yield from _normals(line, supports)
-
-
-def normals_at_points(other: ConfigPart, supports: ConfigPart) -> Problems:
-    """Yield a problem unless a profile has one direction, across the axis of contact."""
-    yield from _normals(None, supports)
-
-
-def _normals(line: Centreline | None, supports: ConfigPart) -> Problems:
-    for index, support in enumerate(supports):
+def normals(supports: ConfigPart, given: Mapping[str, Any]) -> Problems:
+    """Yield a problem unless a profile has one direction, across tube or axis of contact."""
+    line = given.get("line")
+    known = line is not None or "other" in given  # else the bends of the tube have no directions
+    for index, support in enumerate(supports if known else ()):
         profile = support.profile
         place = f"supports[{index}].profile"
         if profile.kind == "planes":
@@ -70,10 +64,10 @@ def _normals(line: Centreline | None, supports: ConfigPart) -> Problems:
         if profile.kind == "lattice" and profile.spacing_m > 0.0 and line is None:
             yield Problem(f"{place}.spacing_m", "is for tubes: leave it out")
         if (profile.normal is None) == (profile.angle_deg is None):
-            given = "neither" if profile.normal is None else "both"
+            stated = "neither" if profile.normal is None else "both"
             yield Problem(
                 place,
-                f"has {given} of normal and angle_deg: give one, the direction of its first land",
+                f"has {stated} of normal and angle_deg: give one, the direction of its first land",
                 profile.kind,
             )
         elif profile.normal is not None:

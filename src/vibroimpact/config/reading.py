@@ -13,7 +13,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from .checks import cross_problems
 from .declared_keys import annotation_of
-from .problems import UNKNOWN, ConfigError, follows, path_in, sentence, shown
+from .problems import UNKNOWN, ConfigError, follows, place_in, sentence, shown
 from .schema import Config
 from .yaml_file import read_yaml
 
@@ -89,7 +89,7 @@ def _mended(data: dict[str, Any], errors: Sequence[Mapping[str, Any]]) -> dict[s
     """
     copied, mended = copy.deepcopy(data), False
     for error in errors:
-        path, words = path_in(error["loc"], data, Config), error.get("ctx", {})
+        path, words = place_in(error["loc"], data, Config).path, error.get("ctx", {})
         if error["type"] == "union_tag_invalid":
             path.append("kind")
         level: Any = copied

@@ -42,7 +42,7 @@ def field_of_section(line: Centreline, flow: ConfigPart, section: str) -> Proble
         yield from off
         if off:
             continue
-        begin, end = _ends(line, stretch)
+        begin, end = sorted(line.locate(at, "stretch") for at in (stretch.from_m, stretch.to_m))
         if end - begin < TOLERANCE:
             yield Problem(f"{place}.to_m", "is the same place as from_m: move one of them")
         taken.append((begin, end, index))
@@ -75,12 +75,6 @@ def _across(
                 " the tube wherever the force acts, or stretches without that place",
             )
             return
-
-
-def _ends(line: Centreline, stretch: ConfigPart) -> tuple[float, float]:
-    """Return the arc lengths in m of the ends of a stretch, ascending."""
-    begin, end = sorted(line.locate(at, "stretch") for at in (stretch.from_m, stretch.to_m))
-    return begin, end
 
 
 def band(turbulence: ConfigPart) -> Problems:

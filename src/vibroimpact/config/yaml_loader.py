@@ -37,7 +37,9 @@ class PlainLoader(yaml.SafeLoader):
         """Return the next node, within the limits. Raises MarkedYAMLError."""
         event = self.peek_event()
         mark = event.start_mark
-        self._refuse_tag(event)
+        if isinstance(event, (ScalarEvent, CollectionStartEvent)) and event.tag is not None:
+            tag = event.tag.replace("tag:yaml.org,2002:", "!!")
+            _refuse(f"{tag} is a tag, which no configuration needs: remove it", mark)
         if self._depth >= DEEPEST:
             _refuse(f"is nested in more than {DEEPEST} blocks and lists: remove some", mark)
         self._depth += 1
@@ -54,12 +56,6 @@ class PlainLoader(yaml.SafeLoader):
         if self._values > MOST_VALUES:
             _refuse(f"the file holds more than {MOST_VALUES} values up to here: shorten it", mark)
         return node
-
-    def _refuse_tag(self, event: Any) -> None:
-        """Raise MarkedYAMLError for a node with a tag of its own."""
-        if isinstance(event, (ScalarEvent, CollectionStartEvent)) and event.tag is not None:
-            tag = event.tag.replace("tag:yaml.org,2002:", "!!")
-            _refuse(f"{tag} is a tag, which no configuration needs: remove it", event.start_mark)
 
     def construct_object(self, node: Node, deep: bool = False) -> Any:
         """Return the value of a node. Raises MarkedYAMLError."""

@@ -1,7 +1,5 @@
 """The places and values at which the effects of the catalogue are tried first."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
@@ -12,7 +10,7 @@ from vibroimpact.effects.effect import Effect, Values
 
 from .constants import FREQUENCY_SD, GAIN_SD, TURN_SD
 from .explanations import Term
-from .measurement.sensor_chain import places as in_the_chain
+from .measurement.sensor_chain import NO_CHANNELS
 
 AT_A_POINT = (
     "added_mass",
@@ -111,13 +109,18 @@ def locations(
     found only from within a quarter of the shortest wave.
     """
     if effect.measured:
-        return in_the_chain(channels)
+        return [*channels, *NO_CHANNELS]
     length = on_structure.length_m(values)
     if effect.id in AT_A_POINT and length is not None:
         count = _count(effect.id, places)
+        turns: tuple[float | None, ...] = (None,)
+        if effect.id == "one_sided_stop":
+            turns = 0.0, 180.0
+        elif across and effect.id != "added_mass":
+            turns = None, ACROSS_DEG
         return [
             on_structure.between(length * (number + 0.5) / count, turned)
-            for turned in _turns(effect.id, across)
+            for turned in turns
             for number in range(count)
         ]
     return effect.locations(values)
@@ -151,13 +154,6 @@ def halfway(term: Term, values: Values, places: int) -> list[Term]:
     ]
 
 
-def _turns(effect_id: str, across: bool) -> tuple[float | None, ...]:
-    """Return directions in degrees from the force, None if an effect has no direction."""
-    if effect_id == "one_sided_stop":
-        return 0.0, 180.0
-    return (None, ACROSS_DEG) if across and effect_id != "added_mass" else (None,)
-
-
 def far_terms(
     effect: Effect,
     location: str,
@@ -168,14 +164,11 @@ def far_terms(
     names = [parameter.name for parameter in effect.parameters]
     for row in far.get(effect.id, ()):
         share = dict(zip(names, row, strict=True))
-        yield Term(
-            effect.id,
-            location,
-            tuple(
-                float(share[each.name] * (share[each.over] if each.over else 1.0) * sizes[each.per])
-                for each in effect.parameters
-            ),
+        values = (
+            float(share[each.name] * (share[each.over] if each.over else 1.0) * sizes[each.per])
+            for each in effect.parameters
         )
+        yield Term(effect.id, location, tuple(values))
 
 
 def within_priors(term: Term, sampling: float, sizes: Mapping[str, float]) -> bool:
@@ -203,12 +196,10 @@ def neutral_term(effect: Effect, location: str, sizes: Mapping[str, float]) -> T
     if effect.id == "contact_stiffness":
         return Term(effect.id, location, (sizes["contact_stiffness"],))
     neutral = effect.neutral()
-    if neutral is None or effect.id in ("saturation_stiffness", *LOBED):
+    lobed = effect.id in LOBES and effect.id != "foliate_lands"
+    if neutral is None or lobed or effect.id == "saturation_stiffness":
         return None
     return Term(effect.id, location, tuple(neutral.values()))
-
-
-LOBED = ("foliate_obstacle", "foliate_trefoil", "foliate_hexafoil")
 
 
 def parts(term: Term, values: Values) -> list[str]:

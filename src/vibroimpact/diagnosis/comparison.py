@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.integration.contact_convergence import contact_contraction
 from vibroimpact.reduction.modal_model import ModalModel
 
@@ -34,8 +33,6 @@ INSIDE = (1.3, 0.92)  # of the ends of the held band: the band of the lines
 class Comparison:
     """Signals of a campaign and a Structure to compare with them.
 
-    impedance: of the structure at its sensors, N s/m:
-    the first frequency over the largest square of a mode shape. band: in which motion is held, Hz.
     with_lost: whether records that do not hold the model are compared all the same. linear: records
     that are held with LINEAR_HOLD of the strength.
     """
@@ -45,32 +42,38 @@ class Comparison:
     threads: int = 1
     with_lost: bool = False
     linear: frozenset[int] = frozenset()
-    rates: Rates = field(init=False)
-    band: tuple[float, float] = field(init=False)
-    impedance: float = field(init=False)
-    sizes: Mapping[str, float] = field(init=False)
 
-    def __post_init__(self) -> None:
-        model = self.structure.with_terms(())
-        rate, steps = self.signals.rate, _steps(model, self.structure.config.integration)
-        rates = rates_of(rate, steps, self.structure.decimation, stages=1)
-        elastic = model.omega > 0.0
-        first = float(model.omega[elastic].min())
-        band = held_band(self.signals, rates, first / (2.0 * np.pi))
-        inside = elastic & (model.frequencies < band[1])
-        largest = float(np.max(model.sensor_shapes[inside] ** 2))
-        for name, value in {
-            "rates": rates,
-            "band": band,
-            "impedance": first / largest,
-        }.items():
-            object.__setattr__(self, name, value)
-        order = self.by_load(self.signals.fit())
-        highest = self._cut([(order[-1], self._starts(order[-1])[0])], STRETCH_S)[0]
-        sizes = sizes_of(
-            model, self.signals, highest, rates.steps_per_second, self.structure.values
-        )
-        object.__setattr__(self, "sizes", sizes)
+    @property
+    def _model(self) -> ModalModel:
+        """Return the model as given."""
+        return self.structure.with_terms(())
+
+    @cached_property
+    def rates(self) -> Rates:
+        """Return the Rates of held runs, which take fewer steps than free ones."""
+        own = self.structure.config.integration
+        contraction = contact_contraction(self._model, 1.0 / own.steps_per_second, own.scheme)
+        share = np.sqrt(np.nan_to_num(contraction, nan=np.inf) / CONTRACTION)
+        steps = own.steps_per_second * float(np.clip(share, FEWER_STEPS, 1.0))
+        return rates_of(self.signals.rate, steps, self.structure.decimation, stages=1)
+
+    @cached_property
+    def band(self) -> tuple[float, float]:
+        """Return the band in which motion is held, Hz."""
+        return held_band(self.signals, self.rates, self._first / (2.0 * np.pi))
+
+    @property
+    def _first(self) -> float:
+        """Return the lowest frequency of the modes that are not rigid motion, rad/s."""
+        return float(self._model.omega[self._model.omega > 0.0].min())
+
+    @cached_property
+    def sizes(self) -> dict[str, float]:
+        """Return the sizes of the structure and its campaign, see sizes.sizes_of."""
+        highest = self.by_load(self.signals.fit())[-1]
+        (stretch,) = self._cut([(highest, self._starts(highest)[0])], STRETCH_S)
+        steps = self.rates.steps_per_second
+        return sizes_of(self._model, self.signals, stretch, steps, self.structure.values)
 
     @property
     def modes(self) -> int:
@@ -80,31 +83,28 @@ class Comparison:
     @cached_property
     def _seen(self):
         """Return the numbers of the modes of the model as given that are seen in the band."""
-        model = self.structure.with_terms(())
-        return np.flatnonzero(seen(model) & (model.frequencies < self.band[1]))
+        return np.flatnonzero(seen(self._model) & (self._model.frequencies < self.band[1]))
 
     @property
     def resonant(self) -> frozenset[str]:
         """Return the names of the modes whose resonance is within the lines. A mode above these
         adds flexibility alone: its frequency would stand for any flexibility that is missing.
         """
-        model = self.structure.with_terms(())
-        inside = model.frequencies[self._seen] < INSIDE[1] * self.band[1]
+        inside = self._model.frequencies[self._seen] < INSIDE[1] * self.band[1]
         return frozenset(f"mode_{number + 1}" for number in self._seen[inside])
 
     def nuisances(self) -> list[Coordinate]:
         """Return the coordinates of the nuisances: of the modes in the band, of all channels and,
         if motion across the force is seen, of its direction.
         """
-        model = self.structure.with_terms(())
-        ratio = model.damping / (2.0 * np.maximum(model.omega, 1.0e-12))
+        ratio = self._model.damping / (2.0 * np.maximum(self._model.omega, 1.0e-12))
         return nuisance_coordinates(ratio[self._seen], len(self.structure.names), self.across)
 
     @cached_property
     def across(self) -> bool:
         """Return whether sensors of more than one direction move at the highest load."""
         moving = self.fitted().moving[-1, :, 0]
-        directions = self.structure.with_terms(()).sensor_directions[moving]
+        directions = self._model.sensor_directions[moving]
         return len(directions) > 0 and int(np.linalg.matrix_rank(directions, tol=0.3)) > 1
 
     @property
@@ -112,8 +112,7 @@ class Comparison:
         """Return the number of places of a mass along a tube: as many as modes up to the end of the
         band, two in each half wave of the highest one.
         """
-        model = self.structure.with_terms(())
-        return int(np.clip(np.sum(model.frequencies < self.band[1]), *ALONG))
+        return int(np.clip(np.sum(self._model.frequencies < self.band[1]), *ALONG))
 
     def by_load(self, records: Sequence[int] | np.ndarray) -> list[int]:
         """Return records in the order of their load over the gap."""
@@ -221,16 +220,17 @@ class Comparison:
 
     def _cut(self, places, duration_s):
         """Return the stretches at places."""
-        return tuple(
-            stretches_of(
-                self.signals, places, duration_s, self.band, self.rates, self.structure.scale
-            )
-        )
+        where = self.band, self.rates, self.structure.scale
+        return tuple(stretches_of(self.signals, places, duration_s, *where))
 
     def _bench(self, places, duration_s=STRETCH_S):
-        """Return the Bench of places."""
+        """Return the Bench of places, its dampers STRENGTH times as strong as the impedance of the
+        structure at its sensors: the first frequency over the largest square of a mode shape.
+        """
         low, high = self.band
         scheme = self.structure.config.integration.scheme
+        inside = (self._model.omega > 0.0) & (self._model.frequencies < high)
+        largest = float(np.max(self._model.sensor_shapes[inside] ** 2))
         return Bench(
             self.structure,
             tuple(
@@ -239,14 +239,7 @@ class Comparison:
             ),
             self.rates.schedule(duration_s, scheme),
             (INSIDE[0] * low, INSIDE[1] * high),
-            STRENGTH * self.impedance,
+            STRENGTH * (self._first / largest),
             self.threads,
             self.band[1],
         )
-
-
-def _steps(model: ModalModel, integration: ConfigPart) -> float:
-    """Return the integration steps per second of held runs; integration: of free ones."""
-    steps, scheme = integration.steps_per_second, integration.scheme
-    contraction = np.nan_to_num(contact_contraction(model, 1.0 / steps, scheme), nan=np.inf)
-    return steps * float(np.clip(np.sqrt(contraction / CONTRACTION), FEWER_STEPS, 1.0))

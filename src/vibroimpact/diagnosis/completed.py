@@ -1,12 +1,12 @@
 """The completed model as a configuration, and the rows of its effects."""
 
-from __future__ import annotations
-
+from itertools import zip_longest
 from typing import Any
 
 import numpy as np
 import yaml
 
+from vibroimpact.diagnosis.verdict.content import NINETY_SD
 from vibroimpact.effects.effect import Values
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.kernels.decimation import RATIO
@@ -14,12 +14,9 @@ from vibroimpact.integration.step_stability import require_stable_step
 from vibroimpact.io.records import plain_values
 
 from .constants import GAIN_SD, VALUE_SD
-from .coordinates import Coordinate
 from .explanations import Point, Structure
 from .measurement.signals import Signals
 from .search import Hypothesis
-
-NINETY_SD = 1.645  # sigma: half width of the 90 % interval of a normal law
 
 
 def effect_rows(hypothesis: Hypothesis, signals: Signals) -> list[Values]:
@@ -39,9 +36,10 @@ def effect_rows(hypothesis: Hypothesis, signals: Signals) -> list[Values]:
                     for end in (x - reach, x + reach)
                 )
                 value = term.values[row.parameter]
+                change = row.to_value(x) * (x if row.log else 1.0)  # from no effect
                 # a gain common to force and responses is hidden in every length
                 hidden = NINETY_SD * float(
-                    np.hypot(GAIN_SD * parameter.gain_power * value, VALUE_SD * _change(row, x))
+                    np.hypot(GAIN_SD * parameter.gain_power * value, VALUE_SD * change)
                 )
                 parameters[parameter.name] = {
                     "value": value,
@@ -65,12 +63,6 @@ def effect_rows(hypothesis: Hypothesis, signals: Signals) -> list[Values]:
     return out
 
 
-def _change(row: Coordinate, x: float) -> float:
-    """Return the change of the value by a coordinate, from its value without the effect."""
-    value = row.to_value(x)
-    return float(value * x) if row.log else value
-
-
 def completed_model(structure: Structure, point: Point, what: str) -> str:
     """Return the YAML text of the configuration of a Point, its frequencies and damping corrected.
 
@@ -79,23 +71,16 @@ def completed_model(structure: Structure, point: Point, what: str) -> str:
     config = structure.configuration(structure.terms(point))
     values = config.model_dump(mode="json")
     factors = np.exp(point.frequency)
-    known = [*values["mode_frequency_factors"], *[1.0] * len(factors)][
-        : max(len(factors), len(values["mode_frequency_factors"]))
-    ]
-    values["mode_frequency_factors"] = [
-        float(own * (factors[mode] if mode < len(factors) else 1.0))
-        for mode, own in enumerate(known)
-    ]
+    known = zip_longest(values["mode_frequency_factors"], factors, fillvalue=1.0)
+    values["mode_frequency_factors"] = [float(own * factor) for own, factor in known]
     damping = dict(values["damping"])
     if damping["kind"] == "modal" and point.damping:
         ratios = [*damping["first_ratios"], *[damping["other_ratio"]] * len(point.damping)]
         damping["first_ratios"] = [
             float(ratio * np.exp(own)) for ratio, own in zip(ratios, point.damping, strict=False)
         ] + [float(ratio) for ratio in damping["first_ratios"][len(point.damping) :]]
-    gains = np.exp([*point.gain, *[0.0] * (len(structure.names) - len(point.gain))])
-    told = ", ".join(
-        f"{name} {gain:.4f}" for name, gain in zip(structure.names, gains, strict=True)
-    )
+    gains = zip_longest(structure.names, np.exp(point.gain), fillvalue=1.0)
+    told = ", ".join(f"{name} {gain:.4f}" for name, gain in gains)
     values |= {"damping": damping, "study": f"{values['study']}_updated"}
     values["integration"] |= _integration(structure, point)
     return "\n".join(

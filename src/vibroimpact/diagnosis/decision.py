@@ -39,7 +39,7 @@ class Decision:
     none. rest: log power over the floor that the best leaves. share: of the log power over the
     floor, that the best explains. by_free_runs: whether only spectra of free runs show it, see
     free_search. surely_off: whether the spectra of a record are off with the best by more than
-    chance, see free_runs.surely_off.
+    chance, see FreeRuns.surely_off.
     """
 
     verdict: Conclusion

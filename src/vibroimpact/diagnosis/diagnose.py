@@ -1,7 +1,5 @@
 """From a campaign and a model to a verdict."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,8 +15,6 @@ from vibroimpact.diagnosis.run_cost import StageCosts
 from vibroimpact.diagnosis.verdict.content import (
     WITH_AMBIGUITY_SET,
     WITH_EFFECTS,
-    Misfit,
-    MisfitBySplit,
     Verdict,
     not_run_sentence,
     write_verdict,
@@ -42,16 +38,16 @@ from .decision import (
     refuted,
 )
 from .evidence import evidence_of
-from .explanations import Point, Structure
+from .explanations import Structure
 from .floor import floor_of
-from .free_runs import FreeRuns, distance, distances, free_runs, regions, surely_off, with_after
+from .free_runs import FreeRuns, free_runs
 from .free_search import far, free_search
 from .identified.identified import PREDICTION, Identified, identified
 from .identified.search import left_and_floor, search_laws
 from .identified.structure_file import model_of
 from .linear_records import with_linear_records
 from .measurement.attached_model import with_channel_points
-from .measurement.signals import Signals, signals_of
+from .measurement.signals import signals_of
 from .measurement.usable import Refused, checks_of_completed, not_testable, usable
 from .next_measurement import next_measurement
 from .search import Hypothesis, Search, search, search_from
@@ -59,30 +55,59 @@ from .search import Hypothesis, Search, search, search_from
 EFFORTS = {"quick": 1, "standard": 2, "thorough": 3}  # effects at once, at most
 REGIONS = 12
 RANKING = ("ids", "location", "probability", "gain", "gain_apart", "error")
+COMPLETED = "The model with the effects that the campaign shows to be missing; modes are corrected."
+NOT_HELD = (
+    "the sensors are too few to hold the model through its impacts. It is compared by its spectra"
+    " alone; more sensors help, between the supports and in both directions."
+)
+SENSITIVE = (
+    "The spectra of free runs are off with the model as given, and as measured once its"
+    " frequencies, its damping and the force are changed within their uncertainty: the motion is"
+    " sensitive to them, and no effect is asked for."
+)
+BY_FREE_RUNS = (
+    "The holding force does not show what is missing, spectra of free runs do: they compare"
+    " statistics of a chaotic motion. The kind of the effect and its place are told, its value"
+    " within the interval only."
+)
 
 Log = Callable[[str], None]
+Rows = list[dict[str, Any]]
 
 
 @dataclass(frozen=True, eq=False)
-class Diagnosis:
-    """A verdict and its grounds, which are None if the campaign was refused."""
+class Grounds:
+    """What the verdict on a campaign that was compared rests on; checks: rows. own: the comparison
+    with a model or, without one, the structure that was identified.
+    """
 
-    verdict: Verdict
-    comparison: Comparison | None = None
-    identified: Identified | None = None  # in place of a comparison, if there is no model
-    signals: Signals | None = None
-    search: Search | None = None
-    decision: Decision | None = None
-    runs: FreeRuns | None = None
-    completed: str = "# not testable: the model is as it was\n"
-    without_model: bool = False
+    own: Comparison | Identified
+    search: Search
+    decision: Decision
+    runs: FreeRuns
+    checks: Rows
 
     @property
     def chosen(self) -> Hypothesis | None:
         """Return the hypothesis that the completed model holds, None for the model as given."""
-        if self.decision is None or self.verdict.verdict in ("none", "unknown"):
-            return None
-        return self.decision.best
+        return added(self.decision)
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """A verdict, its Grounds, None if the campaign was refused, and the text of the completed
+    model.
+    """
+
+    verdict: Verdict
+    grounds: Grounds | None = None
+    completed: str = "# not testable: the model is as it was\n"
+    without_model: bool = False
+
+
+def added(decision: Decision) -> Hypothesis | None:
+    """Return the hypothesis that a Decision adds to the model, None if it adds none."""
+    return None if decision.verdict in ("none", "unknown") else decision.best
 
 
 def diagnose(
@@ -122,7 +147,7 @@ def run_diagnosis(
     if isinstance(config, MeasuredStructure):
         return _run_identified(campaign, config, EFFORTS[effort], provenance or {}, log)
     costs = StageCosts()
-    checks: list[dict[str, Any]] = []
+    checks: Rows = []
     try:
         with costs("reading and checks"):
             found, checks = usable(campaign, config)
@@ -130,30 +155,25 @@ def run_diagnosis(
             comparison = Comparison(signals_of(found), Structure(whole, found), threads=threads)
             comparison = with_linear_records(comparison)
         with costs("free runs"):
-            runs = free_runs(comparison.structure, comparison.signals, None)
+            runs = free_runs(comparison.structure, comparison.signals)
         with costs("search"):
             comparison, searched, runs = _searched(comparison, runs, EFFORTS[effort], log)
     except Refused as refusal:
-        return Diagnosis(_refused(refusal, checks, provenance or {}, costs))
+        return _refused(refusal, checks, provenance, costs)
     with costs("floor"):
-        level, floor = _level_and_floor(comparison, searched)
+        levels = _level_and_floor(comparison, searched)
     for first in searched.other_firsts if EFFORTS[effort] > 1 else ():
-        if not level - floor > LEFT:
+        if not levels[0] - levels[1] > LEFT:
             break
         with costs("search"):
             searched = search_from(comparison, searched, first, _seen_effects(comparison), log)
         with costs("floor"):
-            level, floor = _level_and_floor(comparison, searched)
+            levels = _level_and_floor(comparison, searched)
     with costs("free runs"):
-        decision, runs = _run_free(comparison, searched, (level, floor), runs, log)
+        decision, runs = _run_free(searched, levels, runs, log)
         decision, runs = free_search(comparison, searched, decision, runs, log)
-    return _concluded(
-        _Found(
-            *(comparison.signals, searched, decision, runs, checks, provenance or {}, comparison),
-            campaign=campaign,
-        ),
-        costs.total(),
-    )
+    grounds = Grounds(comparison, searched, decision, runs, checks)
+    return _concluded(grounds, campaign, provenance, costs)
 
 
 def _searched(
@@ -165,17 +185,17 @@ def _searched(
     that hold the given one, and its spectra are far off with the fitted nuisances too, the others
     are compared.
     """
-    signals, effects = comparison.signals, _seen_effects(comparison)
+    effects = _seen_effects(comparison)
     searched = search(comparison, most, effects, log)
-    if gains(searched) or not far(runs, signals):
+    if gains(searched) or not far(runs):
         return comparison, searched, runs
-    runs = with_after(runs, comparison.structure, signals, searched.nothing.point)
-    if comparison.lost and far(runs, signals):
+    runs = runs.completed(searched.nothing.point)
+    if comparison.lost and far(runs):
         log("nothing gains on the records that hold the model: the others are compared too")
         wider = comparison.widened()
         again = search(wider, most, effects, log)
         if gains(again):
-            return wider, again, replace(runs, after=runs.before)
+            return wider, again, runs.as_given
     return comparison, searched, runs
 
 
@@ -192,11 +212,7 @@ def _level_and_floor(comparison: Comparison, searched: Search) -> tuple[float, f
 
 
 def _run_free(
-    comparison: Comparison,
-    searched: Search,
-    levels: tuple[float, float],
-    runs: FreeRuns,
-    log: Log,
+    searched: Search, levels: tuple[float, float], runs: FreeRuns, log: Log
 ) -> tuple[Decision, FreeRuns]:
     """Return (Decision on a Search, FreeRuns with its best hypothesis).
 
@@ -204,35 +220,26 @@ def _run_free(
     little, if it brings them as near as chance allows.
     """
     decision = decide(searched, *levels)
-    if decision.verdict in ("none", "unknown") or decision.best is None:
+    if (best := added(decision)) is None:
         return decision, runs
-    runs, off = _with_best(comparison, decision, runs)
-    if not off:
+    runs = runs.completed(best.point)
+    if not runs.surely_off():
         return decision, runs
     wider = decide(searched, *levels, needed=lambda gained: LEAST_GAIN)
-    if wider.best is not None and set(wider.best.ids) > set(decision.best.ids):
-        closer, off = _with_best(comparison, wider, runs)
+    if wider.best is not None and set(wider.best.ids) > set(best.ids):
+        closer = runs.completed(wider.best.point)
+        off = closer.surely_off()
         log(f"{wider.best.point.name}: {'off' if off else 'near'}, and off without the last effect")
         if not off:
             return wider, closer
     return replace(decision, surely_off=decision.verdict != "partly_explained"), runs
 
 
-def _with_best(
-    comparison: Comparison, decision: Decision, runs: FreeRuns
-) -> tuple[FreeRuns, list[int]]:
-    """Return (FreeRuns with the best hypothesis, the records that are surely off with it)."""
-    assert decision.best is not None
-    signals, structure, point = comparison.signals, comparison.structure, decision.best.point
-    runs = with_after(runs, structure, signals, point)
-    return runs, surely_off(runs, structure, signals, point, range(len(signals.load)))
-
-
 def _run_identified(
     campaign: xr.Dataset | str | Path,
     stated: MeasuredStructure,
     most: int,
-    provenance: dict[str, Any],
+    provenance: dict[str, Any] | None,
     log: Log,
 ) -> Diagnosis:
     """Return the Diagnosis of a structure that is identified from its own records."""
@@ -240,86 +247,49 @@ def _run_identified(
     try:
         with costs("reading, checks and modes"):
             own, checks = identified(campaign, stated, log)
-            signals = replace(signals_of(own.campaign), band_Hz=own.band_Hz)
         with costs("search"):
-            searched = search_laws(own.setting, most, log)
-            decision = decide(searched, *left_and_floor(own.setting, searched))
-            if decision.verdict not in ("none", "unknown"):
+            searched = search_laws(own, most, log)
+            decision = decide(searched, *left_and_floor(own, searched))
+            if added(decision) is not None:
                 decision = own.completed(decision, checks)
         with costs("free runs"):
-            chosen = None if decision.verdict in ("none", "unknown") else decision.best
-            runs = own.free_runs(chosen)
+            runs = own.free_runs(added(decision))
     except Refused as refusal:
-        return Diagnosis(_refused(refusal, [], provenance, costs), without_model=True)
-    return _concluded(
-        _Found(signals, searched, decision, runs, checks, provenance, identified=own),
-        costs.total(),
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class _Found:
-    """The results of the stages."""
-
-    signals: Signals
-    searched: Search
-    decision: Decision
-    runs: FreeRuns
-    checks: list[dict[str, Any]]
-    provenance: dict[str, Any]
-    comparison: Comparison | None = None
-    identified: Identified | None = None
-    campaign: xr.Dataset | str | Path | None = None
-
-    def checks_with(self, decision: Decision) -> list[dict[str, Any]]:
-        """Return the rows of checks, given the model that a Decision completes."""
-        if self.comparison is None or decision.best is None or self.campaign is None:
-            return self.checks
-        if decision.verdict in ("none", "unknown"):
-            return self.checks
-        completed = self.comparison.structure.configuration(decision.best.point.terms)
-        return checks_of_completed(self.checks, self.campaign, completed)
-
-    def effect_rows(self, hypothesis: Hypothesis) -> list[dict[str, Any]]:
-        """Return the rows of the effects of a hypothesis."""
-        if self.identified is not None:
-            return self.identified.effect_rows(hypothesis)
-        return effect_rows(hypothesis, self.signals)
-
-    def model_text(self, point: Point, sentence: str) -> str:
-        """Return the text of the completed model."""
-        if self.comparison is not None:
-            return completed_model(self.comparison.structure, point, sentence)
-        return self.identified.model_text(point, sentence) if self.identified is not None else ""
-
-    def not_testable(self) -> list[str]:
-        """Return the effects that the campaign can not show."""
-        return not_testable(self.comparison.structure.campaign) if self.comparison else []
+        return replace(_refused(refusal, [], provenance, costs), without_model=True)
+    grounds = Grounds(own, searched, decision, runs, checks)
+    return replace(_concluded(grounds, campaign, provenance, costs), without_model=True)
 
 
 def write_diagnosis(diagnosis: Diagnosis, folder: str | Path) -> None:
     """Write verdict.json, ranking.csv, spectra.nc, evidence.nc and model_updated.yaml into a
-    folder.
+    folder, and prediction.csv if there was no model.
     """
-    folder = Path(folder)
+    folder, found = Path(folder), diagnosis.grounds
     write_verdict(diagnosis.verdict, folder / "verdict.json")
-    write_table(_ranking_table(diagnosis.decision), folder / "ranking.csv", columns=RANKING)
-    write_record(spectra(diagnosis), folder / "spectra.nc")
-    write_record(evidence(diagnosis), folder / "evidence.nc")
+    ranking = [] if found is None else _ranking_table(found.decision)
+    write_table(ranking, folder / "ranking.csv", columns=RANKING)
+    untold = "no {}: the campaign can not be tested"
+    if found is None:
+        spectra, evidence = (
+            xr.Dataset(attrs={"title": untold.format(name)}) for name in ("spectra", "evidence")
+        )
+    else:
+        spectra, evidence = _spectra(found.runs), _evidence(found)
+    write_record(spectra, folder / "spectra.nc")
+    write_record(evidence, folder / "evidence.nc")
     write_text(diagnosis.completed, folder / "model_updated.yaml")
     if diagnosis.without_model:
-        own = diagnosis.identified
-        rows = [] if own is None else own.prediction(diagnosis.chosen)
+        rows = []
+        if found is not None and isinstance(found.own, Identified):
+            rows = found.own.prediction(found.chosen)
         write_table(rows, folder / "prediction.csv", columns=PREDICTION)
 
 
-def spectra(diagnosis: Diagnosis) -> xr.Dataset:
+def _spectra(runs: FreeRuns) -> xr.Dataset:
     """Return psd (state, record, channel, frequency): measured, and of free runs before and
     after.
     """
-    runs, signals = diagnosis.runs, diagnosis.signals
-    if runs is None or signals is None:
-        return xr.Dataset(attrs={"title": "no spectra: the campaign can not be tested"})
+    signals = runs.signals
     values = np.stack([runs.measured, runs.before.mean(axis=1), runs.after.mean(axis=1)])
     return xr.Dataset(
         {
@@ -341,113 +311,103 @@ def spectra(diagnosis: Diagnosis) -> xr.Dataset:
     )
 
 
-def evidence(diagnosis: Diagnosis) -> xr.Dataset:
-    """Return the evidence of a diagnosis: forces, laws, waveforms; see evidence.evidence_of."""
-    if diagnosis.identified is not None:
-        return diagnosis.identified.evidence(diagnosis.chosen)
-    if diagnosis.comparison is None or diagnosis.search is None:
-        return xr.Dataset(attrs={"title": "no evidence: the campaign can not be tested"})
-    chosen = diagnosis.chosen
-    after = diagnosis.search.nothing.point if chosen is None else chosen.point
-    return evidence_of(diagnosis.comparison, diagnosis.search.nothing.point, after)
+def _evidence(found: Grounds) -> xr.Dataset:
+    """Return the forces, laws and waveforms before and after completion, see evidence_of."""
+    if isinstance(found.own, Identified):
+        return found.own.evidence(found.chosen)
+    nothing = found.search.nothing
+    return evidence_of(found.own, nothing.point, (found.chosen or nothing).point)
 
 
-def _refused(refusal: Refused, checks, provenance, costs) -> Verdict:
-    """Return the verdict on an untestable campaign; checks: rows before those of the refusal."""
-    empty = Misfit(before_dB=None, after_dB=None, floor_dB=None, closed_fraction=None)
-    return not_testable_verdict(
-        _contract([*checks, *refusal.checks]),
-        provenance,
-        next_measurement=str(refusal),
-        misfit=MisfitBySplit(fit=empty, holdout=empty),
-        cost=costs.total(),
-    )
+def _refused(
+    refusal: Refused, checks: Rows, provenance: dict[str, Any] | None, costs: StageCosts
+) -> Diagnosis:
+    """Return the Diagnosis of an untestable campaign; checks: rows before those of the refusal."""
+    rows = _contract([*checks, *refusal.checks])
+    return Diagnosis(not_testable_verdict(rows, provenance or {}, str(refusal), costs.total()))
 
 
-def _contract(checks):
+def _contract(checks: Rows) -> Rows:
     """Return the rows of checks with the keys of the contract alone."""
     keys = ("check", "level", "record", "channel", "message")
     return [{key: row.get(key) for key in keys} for row in checks]
 
 
-def _concluded(found: _Found, cost: dict[str, Any]) -> Diagnosis:
+def _concluded(
+    found: Grounds,
+    campaign: xr.Dataset | str | Path,
+    provenance: dict[str, Any] | None,
+    costs: StageCosts,
+) -> Diagnosis:
     """Return the Diagnosis of a campaign that was compared.
 
     An explanation that makes held-out records worse, or leaves them far off, is dropped: the
     verdict is unknown and states it as withdrawn, or is none if there was no excess.
     """
-    misfits, effects, withdrawn = _misfits(found), _effects(found), None
+    misfits, effects, withdrawn = _misfits(found.runs), _effects(found), None
     decision = _verified(found, misfits)
     if decision.verdict == "none" and effects:  # refuted, and nothing is missing
-        found = replace(found, decision=decision, runs=replace(found.runs, after=found.runs.before))
-        misfits, effects = _misfits(found), []
-    elif decision.verdict == "unknown" and found.decision.verdict not in ("none", "unknown"):
+        found = replace(found, runs=found.runs.as_given)
+        misfits, effects = _misfits(found.runs), []
+    elif decision.verdict == "unknown" and found.chosen is not None:
         withdrawn = {"effects": effects, "misfit": misfits}
-    checks = [*found.checks_with(decision), *_lost_rows(found), *_free_rows(decision, found)]
+    found = replace(found, decision=decision)
+    failed, cost = list(found.search.failed), costs.total()
     content = {
         **_decided(decision, effects),
-        "regions": (
-            [] if decision.verdict == "none" else regions(found.runs, found.signals, REGIONS)
-        ),
+        "regions": [] if decision.verdict == "none" else found.runs.regions(REGIONS),
         "misfit": misfits,
         "p_global_before": None,
         "p_global_after": None,
-        "checks": _contract(checks),
-        "not_run": list(found.searched.failed),
-        "not_testable": found.not_testable(),
-        "provenance": found.provenance,
-        "load_unit": found.signals.load_unit,
+        "checks": _contract(_checks(found, campaign)),
+        "not_run": failed,
+        "not_testable": (
+            not_testable(found.own.structure.campaign) if isinstance(found.own, Comparison) else []
+        ),
+        "provenance": provenance or {},
+        "load_unit": found.runs.signals.load_unit,
         "withdrawn": withdrawn,
         "cost": cost,
         "seconds": cost["cpu_seconds"],
         "simulations": cost["simulations"],
     }
-    completed = (
-        not_offered(withdrawn)
-        if withdrawn
-        else found.model_text(
-            _offered(found.searched, decision),
-            _sentence(decision.verdict) + not_run_sentence(found.searched.failed),
-        )
-    )
-    return Diagnosis(
-        Verdict.from_values(content),
-        found.comparison,
-        found.identified,
-        found.signals,
-        found.searched,
-        decision,
-        found.runs,
-        completed,
-        found.identified is not None,
-    )
+    completed = not_offered(withdrawn) if withdrawn else _model_text(found)
+    return Diagnosis(Verdict.from_values(content), found, completed)
 
 
-def _verified(found: _Found, misfits: dict[str, Any]) -> Decision:
+def _verified(found: Grounds, misfits: dict[str, Any]) -> Decision:
     """Return the Decision given the distances of free runs; misfits: of the splits."""
-    told = counted(found.decision, misfits)
-    if found.comparison is not None:
-        return beside_spectra(found.decision, told, distances(found.runs, found.signals))
-    worse = found.decision.verdict not in ("none", "unknown") and makes_worse(told)
+    told, signals = counted(found.decision, misfits), found.runs.signals
+    if isinstance(found.own, Comparison):
+        channels = range(len(signals.names))
+        each = [
+            found.runs.distance([record], k)
+            for record in range(len(signals.load))
+            for k in channels
+        ]
+        return beside_spectra(found.decision, told, each)
+    worse = found.chosen is not None and makes_worse(told)
     return refuted(found.decision) if worse else found.decision
 
 
-def _misfits(found: _Found) -> dict[str, Any]:
+def _misfits(runs: FreeRuns) -> dict[str, Any]:
     """Return `misfit` of verdict.json."""
-    signals = found.signals
+    splits = {"fit": runs.signals.fit(), "holdout": runs.signals.holdout()}
     return {
-        split: distance(found.runs, signals, records) if len(records) else None
-        for split, records in (("fit", signals.fit()), ("holdout", signals.holdout()))
+        split: runs.distance(records) if len(records) else None for split, records in splits.items()
     }
 
 
-def _effects(found: _Found) -> list[dict[str, Any]]:
+def _effects(found: Grounds) -> list[dict[str, Any]]:
     """Return the rows of the effects of the best hypothesis, none if nothing is missing."""
-    decision = found.decision
+    decision, own = found.decision, found.own
     if decision.best is None or decision.verdict == "none":
         return []
     fits = "yes" if decision.verdict in ("named", "ambiguous") else "no"
-    rows = found.effect_rows(decision.best)
+    if isinstance(own, Identified):
+        rows = own.effect_rows(decision.best)
+    else:
+        rows = effect_rows(decision.best, own.signals)
     return [row | {"law_fits": fits} for row in rows]
 
 
@@ -466,11 +426,7 @@ def _decided(decision: Decision, effects: list[dict[str, Any]]) -> dict[str, Any
         }
         for row in _ranking_table(decision)
     ]
-    broken = {
-        test
-        for term in (decision.best.point.terms if named and decision.best else ())
-        for test in term.effect.broken
-    }
+    terms = decision.best.point.terms if named and decision.best else ()
     return {
         "verdict": conclusion,
         "effects": effects if named else [],
@@ -480,68 +436,45 @@ def _decided(decision: Decision, effects: list[dict[str, Any]]) -> dict[str, Any
         "probability_something_else": decision.something_else,
         "ranking": ranking,
         "next_measurement": next_measurement(sets),
-        "broken_invariances": sorted(broken),
+        "broken_invariances": sorted({test for term in terms for test in term.effect.broken}),
         "most_probable": effects,
     }
 
 
-def _offered(searched: Search, decision: Decision) -> Point:
-    """Return the Point of the completed model, without effects if none is offered."""
-    if decision.verdict in ("none", "unknown") or decision.best is None:
-        return searched.nothing.point
-    return decision.best.point
+def _model_text(found: Grounds) -> str:
+    """Return the text of the completed model, without effects if none is offered."""
+    sentence, conclusion = COMPLETED, found.decision.verdict
+    if found.chosen is None:
+        sentence = f"The verdict is {conclusion}: no effect was added, modes are corrected."
+    sentence += not_run_sentence(found.search.failed)
+    point = (found.chosen or found.search.nothing).point
+    if isinstance(found.own, Identified):
+        return found.own.model_text(point, sentence)
+    return completed_model(found.own.structure, point, sentence)
 
 
-def _sentence(conclusion):
-    """Return the sentence at the head of the file of the completed model."""
-    if conclusion in ("none", "unknown"):
-        return f"The verdict is {conclusion}: no effect was added, modes are corrected."
-    return "The model with the effects that the campaign shows to be missing; modes are corrected."
-
-
-def _lost_rows(found: _Found) -> list[dict[str, Any]]:
-    """Return the rows of checks for records that do not hold the model."""
-    lost = () if found.comparison is None else found.comparison.lost
-    names = [str(found.signals.record_names[record]) for record in lost]
-    return [
-        check_row(
-            "not held",
-            "warn",
-            f"record {name}: the sensors are too few to hold the model through its impacts. It is"
-            " compared by its spectra alone; more sensors help, between the supports and in both"
-            " directions.",
-            record=name,
-        )
-        for name in names
-    ]
-
-
-def _free_rows(decision: Decision, found: _Found) -> list[dict[str, Any]]:
-    """Return the row of checks for an effect that only spectra of free runs show, or for spectra
-    that only the fitted nuisances bring to their floor.
+def _checks(found: Grounds, campaign: xr.Dataset | str | Path) -> Rows:
+    """Return the rows of checks given the completed model, with those on records that do not hold
+    the model, and on what free runs alone tell.
     """
-    moved = found.comparison is not None and found.runs.after is not found.runs.before
-    if decision.verdict == "none" and moved:
-        sentence = (
-            "The spectra of free runs are off with the model as given, and as measured once its"
-            " frequencies, its damping and the force are changed within their uncertainty: the"
-            " motion is sensitive to them, and no effect is asked for."
-        )
-        return [check_row("sensitive motion", "warn", sentence)]
-    if not decision.by_free_runs or decision.verdict in ("none", "unknown"):
-        return []
-    sentence = (
-        "The holding force does not show what is missing, spectra of free runs do: they compare"
-        " statistics of a chaotic motion. The kind of the effect and its place are told, its value"
-        " within the interval only."
-    )
-    return [check_row("told by free runs", "warn", sentence)]
+    if isinstance(found.own, Identified):
+        return found.checks
+    rows, chosen, moved = found.checks, found.chosen, found.runs.after is not found.runs.before
+    if chosen is not None:
+        completed = found.own.structure.configuration(chosen.point.terms)
+        rows = checks_of_completed(rows, campaign, completed)
+    names = [str(found.own.signals.record_names[record]) for record in found.own.lost]
+    lost = [check_row("not held", "warn", f"record {name}: {NOT_HELD}", name) for name in names]
+    told = []
+    if found.decision.verdict == "none" and moved:
+        told = [check_row("sensitive motion", "warn", SENSITIVE)]
+    elif found.decision.by_free_runs and chosen is not None:
+        told = [check_row("told by free runs", "warn", BY_FREE_RUNS)]
+    return [*rows, *lost, *told]
 
 
-def _ranking_table(decision: Decision | None) -> list[dict[str, Any]]:
+def _ranking_table(decision: Decision) -> list[dict[str, Any]]:
     """Return the rows of ranking.csv."""
-    if decision is None:
-        return []
     return [
         {
             "ids": "+".join(each.point.ids),

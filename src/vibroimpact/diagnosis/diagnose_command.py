@@ -61,7 +61,7 @@ def run(options: argparse.Namespace) -> int:
                 model,
                 options.effort,
                 threads=os.cpu_count() or 1,
-                provenance=verdict_origin(values_of(model), options.campaign, None),
+                provenance=verdict_origin(values_of(model), options.campaign),
                 log=bar,
             )
         if options.folder:

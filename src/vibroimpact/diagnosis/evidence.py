@@ -3,14 +3,13 @@ demand next to the model's, and the prediction of a sensor that is left free.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 from scipy.signal import resample_poly
 
-from vibroimpact.integration.held_run import HeldRecords, hold
-from vibroimpact.reduction.modal_model import ModalModel
+from vibroimpact.integration.held_run import hold
 
 from .bench import Bench, in_band, lane_of, sampled_motion, settled
 from .comparison import Comparison
@@ -34,27 +33,42 @@ PLACES = (  # of a campaign: positions and directions of its channels and forces
 ACTS = 0.3  # of the power of the sensors: not explained by the drive alone
 
 
-@dataclass(frozen=True, eq=False)
 class HeldState:
     """Runs of one Point on the stretches of a Bench; the first runs are those with all held.
 
-    records: of the channels, then the Places. free {(stretch, channel): run}.
+    free: [(stretch, channel)] of the further runs, with one channel left free. records: of the
+    channels, then the Places. Raises ConfigError or ValueError for values that no structure can
+    have.
     """
 
-    bench: Bench
-    model: ModalModel
-    places: Places
-    chain: Measuring
-    records: HeldRecords
-    free: dict[tuple[int, int], int]
-
-    def holding(self) -> np.ndarray:
-        """Return (stretch, channel, sample) N: the holding force with all held, as a residual of
-        the measured motion.
-        """
-        gain = self.chain.gain[:, None]
-        force = self.records.force[: len(self.bench.stretches), : len(gain)]
-        return force.astype(float) * gain
+    def __init__(self, bench: Bench, point: Point, free: Sequence[tuple[int, int]]):
+        model, chain = bench.structure.held_model(point), bench.structure.measuring(point)
+        self.bench, self.model, self.chain = bench, model, chain
+        self.places = places_of(model)
+        # the places are further sensors that are not held
+        count = len(self.places.names)
+        more = ((0, count), (0, 0))
+        observed = replace(
+            model,
+            sensor_shapes=np.hstack([model.sensor_shapes, self.places.shapes]),
+            sensor_names=(*model.sensor_names, *self.places.names),
+            sensor_positions=np.pad(model.sensor_positions, more, mode="edge"),
+            sensor_directions=np.pad(model.sensor_directions, more, mode="edge"),
+        )
+        through = Measuring(
+            np.r_[chain.gain, np.ones(count)], np.r_[chain.delay, np.zeros(count)], chain.force_gain
+        )
+        stretches = tuple(
+            replace(each, motion=np.pad(each.motion, ((0, 0), (0, count))))
+            for each in bench.stretches
+        )
+        wide = replace(bench, stretches=stretches)
+        lanes = [lane_of(wide, stretch, observed, through) for stretch in stretches]
+        lanes += [
+            lane_of(wide, stretches[at], observed, through, [channel]) for at, channel in free
+        ]
+        self.records = hold(lanes, bench.schedule, bench.threads, bench.held_below_Hz)
+        self.free = {key: len(stretches) + number for number, key in enumerate(free)}
 
     def at_places(self, stretch: int) -> np.ndarray:
         """Return (2, place, sample): force in N and motion in m with all sensors held."""
@@ -63,8 +77,7 @@ class HeldState:
         force = np.zeros_like(motion)
         force[:supports] = self.records.support_force[stretch, :supports]
         rate = self.bench.schedule.sampling_frequency
-        for element in range(len(self.model.element_names)):
-            moved = motion[supports + element]
+        for element, moved in enumerate(motion[supports:]):
             force[supports + element] = element_force(self.model.local_laws, element, moved, rate)
         return np.stack([force, motion])
 
@@ -75,39 +88,6 @@ class HeldState:
         measured = sampled_motion(self.bench, stretch, self.chain.delay)[channel]
         free = self.records.motion[self.free[stretch, channel], channel].astype(float)
         return np.stack([measured, self.chain.gain[channel] * free])
-
-
-def held_state(bench: Bench, point: Point, free: Sequence[tuple[int, int]]) -> HeldState:
-    """Return the HeldState of a Point; free: [(stretch, channel)] of the runs with one left free.
-
-    Raises ConfigError or ValueError for values that no structure can have.
-    """
-    model, chain = bench.structure.held_model(point), bench.structure.measuring(point)
-    places = places_of(model)
-    # the places are further sensors that are not held
-    count = len(places.names)
-    more = ((0, count), (0, 0))
-    observed = replace(
-        model,
-        sensor_shapes=np.hstack([model.sensor_shapes, places.shapes]),
-        sensor_names=(*model.sensor_names, *places.names),
-        sensor_positions=np.pad(model.sensor_positions, more, mode="edge"),
-        sensor_directions=np.pad(model.sensor_directions, more, mode="edge"),
-    )
-    through = Measuring(
-        np.r_[chain.gain, np.ones(count)], np.r_[chain.delay, np.zeros(count)], chain.force_gain
-    )
-    stretches = [
-        replace(each, motion=np.pad(each.motion, ((0, 0), (0, count)))) for each in bench.stretches
-    ]
-    wide = replace(bench, stretches=tuple(stretches))
-    lanes = [lane_of(wide, stretch, observed, through) for stretch in stretches]
-    lanes += [
-        lane_of(wide, stretches[number], observed, through, [channel]) for number, channel in free
-    ]
-    records = hold(lanes, bench.schedule, bench.threads, bench.held_below_Hz)
-    runs = {key: len(stretches) + number for number, key in enumerate(free)}
-    return HeldState(bench, model, places, chain, records, runs)
 
 
 def evidence_of(comparison: Comparison, before: Point, after: Point) -> xr.Dataset:
@@ -126,7 +106,7 @@ def evidence_of(comparison: Comparison, before: Point, after: Point) -> xr.Datas
     fitted, apart = comparison.fitted(), comparison.apart()
     bench = replace(fitted, stretches=(*fitted.stretches, *apart.stretches))
     free = _left_free(bench, len(fitted.stretches))
-    states = [held_state(bench, point, free) for point in (before, after)]
+    states = [HeldState(bench, point, free) for point in (before, after)]
     campaign = comparison.structure.campaign
     places = {name: campaign[name].variable for name in PLACES if name in campaign}
     return xr.Dataset(
@@ -182,19 +162,30 @@ def _left_free(bench: Bench, fitted: int) -> list[tuple[int, int]]:
 
 
 def _holding(bench: Bench, states: list[HeldState]) -> dict:
-    """Return the RMS of the settled samples of the holding force by band."""
-    series = np.stack([state.holding()[..., settled(bench)] for state in states])
-    count = series.shape[-1]
+    """Return the RMS of the settled samples of the holding force with all held by band, as a
+    residual of the measured motion.
+    """
+    inside, rows = settled(bench), []
+    for state in states:
+        gain = state.chain.gain[:, None]
+        force = state.records.force[: len(bench.stretches), : len(gain)]
+        rows.append((force.astype(float) * gain)[..., inside])
+    series, count = np.stack(rows), len(inside)
     window = np.hanning(count)
     power = 2.0 * np.abs(np.fft.rfft(series * window, axis=-1)) ** 2 / (count * np.sum(window**2))
     edges = np.geomspace(*bench.band, HOLDING_BANDS + 1)
     frequency = np.fft.rfftfreq(count, 1.0 / bench.schedule.sampling_frequency)
     number = np.searchsorted(edges, frequency, side="right") - 1
-    rows = [power[..., number == band].sum(axis=-1) for band in range(HOLDING_BANDS)]
-    found = np.sqrt(np.stack(rows, axis=-1)).astype(np.float32)
-    dims = ("state", "stretch", "channel", "band")
+    bands = [power[..., number == band].sum(axis=-1) for band in range(HOLDING_BANDS)]
+    return holding_force(np.sqrt(np.stack(bands, axis=-1)).astype(np.float32), edges)
+
+
+def holding_force(found: np.ndarray, edges: np.ndarray) -> dict:
+    """Return the variables of the holding force (state, stretch, channel, band) in N; edges (band +
+    1,): Hz.
+    """
     return {
-        "holding_force": (dims, found, {"units": "N"}),
+        "holding_force": (("state", "stretch", "channel", "band"), found, {"units": "N"}),
         "band_low": ("band", edges[:-1], {"units": "Hz"}),
         "band_high": ("band", edges[1:], {"units": "Hz"}),
     }
@@ -209,21 +200,36 @@ def _law(comparison: Comparison, bench: Bench, states: list[HeldState], point: P
     chosen = _acting(bench, demands)
     shown = [demands[number] for number in chosen]
     model = np.stack([_modelled(comparison.band, state, places, chosen) for state in states])
-    dims = ("law_stretch", "place", "sample")
+    dims = ("law_stretch", "place")
+    demanded = np.array([(row.force, row.motion) for row in shown], np.float32).swapaxes(0, 1)
     time = settled(bench) / bench.schedule.sampling_frequency
-    out: dict = {
-        "place_name": ("place", np.array(places.names, object)),
-        "owner_name": ("place", np.array(places.owners, object)),
-        "law_of_stretch": ("law_stretch", np.array(chosen, int)),
-        "sample_time": ("sample", time, {"units": "s"}),
-    }
-    for part, (name, unit) in enumerate((("force", "N"), ("motion", "m"))):
-        demanded = np.array([getattr(row, name) for row in shown], np.float32)
-        out[f"demanded_{name}"] = dims, demanded, {"units": unit}
-        out[f"model_{name}"] = ("state", *dims), model[:, part], {"units": unit}
+    out = law_against_motion(places.names, places.owners, chosen, demanded, model)
+    out["sample_time"] = "sample", time, {"units": "s"}
     for name, rank in (("resolution", 2), ("explained", 1), ("beyond", 1)):
         share = np.array([getattr(row, name) for row in shown])
         out[name] = dims[:rank], share, {"units": "1"}
+    return out
+
+
+def law_against_motion(
+    names: Sequence[str],
+    owners: Sequence[str],
+    chosen: Sequence[int],
+    demanded: np.ndarray,
+    model: np.ndarray,
+) -> dict:
+    """Return the variables of the force in N against the motion in m at places of chosen stretches:
+    demanded (2, law_stretch, place, sample), and of the model (state, 2, ..).
+    """
+    dims = ("law_stretch", "place", "sample")
+    out: dict = {
+        "place_name": ("place", np.array(names, object)),
+        "owner_name": ("place", np.array(owners, object)),
+        "law_of_stretch": ("law_stretch", np.array(chosen, int)),
+    }
+    for part, (name, unit) in enumerate((("force", "N"), ("motion", "m"))):
+        out[f"demanded_{name}"] = dims, demanded[part], {"units": unit}
+        out[f"model_{name}"] = ("state", *dims), model[:, part], {"units": unit}
     return out
 
 
@@ -267,23 +273,16 @@ def _free(comparison: Comparison, bench: Bench, states: list[HeldState]) -> dict
         error[:, stretches.index(number), channel] = [
             np.std(measured - predicted) / rms for measured, predicted in (before, after)
         ]
-    told = _most_telling(error, stretches)
+    # the prediction that gains most in the stretch of the highest load; the worst if none gains
+    given, completed = np.nan_to_num(error[:, 0])
+    gain = np.minimum(given, 2.0) - np.minimum(completed, 2.0)
+    told = stretches[0], int(np.argmax(gain if gain.max() > 0.0 else completed))
     unit = "1/s" if comparison.signals.kinds[told[1]] == STRAIN else "m/s"
     return {
         "free_error": (("state", "free_stretch", "channel"), error, {"units": "1"}),
         "free_of_stretch": ("free_stretch", np.array(stretches, int)),
         **_waveform(bench, velocity[told], told, unit, comparison.structure.scale[told[1]]),
     }
-
-
-def _most_telling(error: np.ndarray, stretches: list[int]) -> tuple[int, int]:
-    """Return (stretch, channel) whose prediction gains most in the stretch of the highest load; the
-    largest error if none gains. error (state, free_stretch, channel): NaN for the others.
-    """
-    before, after = np.nan_to_num(error[0, 0]), np.nan_to_num(error[1, 0])
-    gain = np.minimum(before, 2.0) - np.minimum(after, 2.0)
-    channel = int(np.argmax(gain if gain.max() > 0.0 else after))
-    return stretches[0], channel
 
 
 def _waveform(bench, series, told, unit, scale):

@@ -4,8 +4,8 @@ with both.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -16,14 +16,11 @@ from vibroimpact.config.schema import Config
 from vibroimpact.effects.effect import Effect, Values
 from vibroimpact.effects.places import with_place
 from vibroimpact.effects.registry import EFFECTS
-from vibroimpact.excitation.force_vectors import MODE_FIELDS
-from vibroimpact.reduction.basis import Basis
-from vibroimpact.reduction.modal_model import ModalModel
+from vibroimpact.reduction.modal_model import MODE_FIELDS, ModalModel
 
 from .measurement.attached_model import attach, attached_basis
 from .measurement.sensed_motion import displacement_scale
 from .measurement.sensor_chain import Measuring
-from .measurement.stretches import decimation_of
 
 KEPT_MODELS = 256
 # Records are compared at a sampling frequency of so much at least, and so many times the first
@@ -105,47 +102,30 @@ class Point:
         return replace(self, terms=(*self.terms, term))
 
 
-@dataclass(frozen=True, eq=False)
 class Structure:
     """The model as given, attached to a campaign; it makes the models of Points.
 
-    scale (channel,): displacement per unit of a channel's quantity. decimation: of the records that
-    are compared with it. dropped, unheld: number of modes that free runs and held ones leave out.
+    values: of its configuration. names (channel,): of the channels. scale (channel,): displacement
+    per unit of a channel's quantity. decimation: of the records that are compared with it.
     """
 
-    config: Config
-    campaign: xr.Dataset
-    values: Values = field(init=False)
-    scale: np.ndarray = field(init=False)
-    basis: Basis | None = field(init=False)
-    decimation: int = field(init=False)
-    dropped: int = field(init=False)
-    unheld: int = field(init=False)
-    with_terms: Callable[[tuple[Term, ...]], ModalModel] = field(init=False)
-    lower: Callable[[ModalModel], ModalModel] = field(init=False)
-
-    def __post_init__(self) -> None:
-        own = attach(self.config, self.campaign)
-        fields = {
-            "values": self.config.model_dump(mode="json"),
-            "scale": displacement_scale(own, self.campaign["channel_kind"].values),
-            "basis": attached_basis(self.config, self.campaign),
-            "with_terms": lru_cache(maxsize=KEPT_MODELS)(self._with_terms),
-            "lower": lru_cache(maxsize=KEPT_MODELS)(self._lower),
-        }
-        sampling = float(self.campaign.attrs["sampling_frequency"])
+    def __init__(self, config: Config, campaign: xr.Dataset):
+        own = attach(config, campaign)
+        self.config, self.campaign = config, campaign
+        self.values: Values = config.model_dump(mode="json")
+        self.names = [str(name) for name in campaign["channel_name"].values]
+        self.scale = displacement_scale(own, campaign["channel_kind"].values)
+        self.with_terms = lru_cache(maxsize=KEPT_MODELS)(self._with_terms)
+        self._lower = lru_cache(maxsize=KEPT_MODELS)(_without_highest)
+        self._basis = attached_basis(config, campaign)
+        sampling = float(campaign.attrs["sampling_frequency"])
         first = float(own.frequencies[own.omega > 0.0].min())
-        decimation = decimation_of(sampling, max(SLOWEST_HZ, PER_FIRST_MODE * first))
-        fields["decimation"] = decimation
-        for name, to in (("dropped", MODES_TO), ("unheld", HELD_TO)):
-            fields[name] = int(np.sum(own.frequencies > to * sampling / decimation))
-        for name, value in fields.items():
-            object.__setattr__(self, name, value)
-
-    @property
-    def names(self) -> list[str]:
-        """Return the names of the channels."""
-        return [str(name) for name in self.campaign["channel_name"].values]
+        self.decimation = max(int(sampling / max(SLOWEST_HZ, PER_FIRST_MODE * first)), 1)
+        # numbers of modes that free runs and held ones leave out
+        self._dropped, self._unheld = (
+            int(np.sum(own.frequencies > to * sampling / self.decimation))
+            for to in (MODES_TO, HELD_TO)
+        )
 
     def terms(self, point: Point) -> tuple[Term, ...]:
         """Return the terms of a Point and a term for the turn of its force, about the same axis as
@@ -170,17 +150,13 @@ class Structure:
 
     def _with_terms(self, terms: tuple[Term, ...]) -> ModalModel:
         """Return the attached model with terms, its sensors scaled to displacements."""
-        model = attach(self.configuration(terms), self.campaign, self.basis)
+        model = attach(self.configuration(terms), self.campaign, self._basis)
         model = replace(model, sensor_shapes=model.sensor_shapes * self.scale)
-        return _without_highest(model, self.dropped)
-
-    def _lower(self, model: ModalModel) -> ModalModel:
-        """Return a model of `model` with the modes that a held run needs."""
-        return _without_highest(model, self.unheld - self.dropped)
+        return _without_highest(model, self._dropped)
 
     def held_model(self, point: Point) -> ModalModel:
-        """Return the model of a Point for a held run; see `model`."""
-        return self.lower(self.model(point))
+        """Return the model of a Point with the modes that a held run needs; see `model`."""
+        return self._lower(self.model(point), self._unheld - self._dropped)
 
     def model(self, point: Point) -> ModalModel:
         """Return the attached model of a Point.
@@ -204,12 +180,11 @@ class Structure:
 
     def measuring(self, point: Point) -> Measuring:
         """Return the measuring chain of a Point."""
-        names = self.names
-        gain = np.ones(len(names)) * (np.exp(point.gain) if point.gain else 1.0)
-        chain = Measuring(gain, np.zeros(len(names)))
+        still = np.zeros(len(self.names))
+        chain = Measuring(np.exp(point.gain) + still if point.gain else 1.0 + still, still)
         for term in point.terms:
             if term.effect.measured:
-                chain = chain.with_fault(term.effect_id, term.parameters, term.location, names)
+                chain = chain.with_fault(term.effect_id, term.parameters, term.location, self.names)
         return chain
 
 

@@ -5,8 +5,6 @@ that motion and noise, and nuisances are fitted as to the measurement. The holdi
 remains is the floor.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
+from functools import cached_property
+from itertools import combinations, pairwise
 
 import numpy as np
 
@@ -32,81 +33,143 @@ LEAST_SCATTER_DB = 0.5  # between runs of a model, in a band
 
 @dataclass(frozen=True, eq=False)
 class FreeRuns:
-    """Spectra of whole records.
+    """Spectra of whole records of a campaign, and of a model as given and after completion.
 
     frequency (line,): Hz. measured (record, channel, line); before, after (record, seed, channel,
     line): one-sided PSD in the unit of the channel squared per Hz; NaN of a run that failed.
-    noise (record, channel): PSD.
+    noise (record, channel): PSD. structure, point: of the runs after completion; None without a
+    model.
     """
 
+    signals: Signals
     frequency: np.ndarray
     measured: np.ndarray
     before: np.ndarray
     after: np.ndarray
     noise: np.ndarray
+    structure: Structure | None = None
+    point: Point = Point()
+
+    @property
+    def as_given(self) -> FreeRuns:
+        """Return the FreeRuns without a completion."""
+        return replace(self, after=self.before, point=Point())
+
+    def completed(self, point: Point, records: Sequence[int] | None = None) -> FreeRuns:
+        """Return the FreeRuns with another Point after completion; on some records only if
+        given.
+        """
+        values = _simulated(self.structure, self.signals, point, records)
+        return replace(self, after=_psd(values, self.signals)[1], point=point)
+
+    def surely_off(self) -> list[int]:
+        """Return the records that are farther from the model after completion than its own runs are
+        from one another. It may leave FREE_EXCESS_DB, and LEFT_SHARE of what the model as given
+        leaves: laws of two codes differ.
+
+        Whether a tube whirls may be chance. A record that is off some runs is compared with
+        CHANCE_RUNS of them: if the model whirls with any probability, and the measurement does not
+        (or the reverse), all of them differ from it in 2 % of the records at most.
+        """
+        most = FREE_EXCESS_DB + LEFT_SHARE * np.maximum(self.as_given._beyond_chance(), 0.0)
+        off = np.flatnonzero(self._beyond_chance() > most).tolist()
+        if not off:
+            return []
+        seeds = range(SEEDS, CHANCE_RUNS)
+        more = _psd(_simulated(self.structure, self.signals, self.point, off, seeds), self.signals)
+        many = replace(self, after=np.concatenate([self.after, more[1]], axis=1))
+        beyond = many._beyond_chance() - most
+        return [record for record in off if beyond[record] > 0.0]
+
+    def _beyond_chance(self):
+        """Return (record,) dB: distance of the measured spectra of a record from the mean of the
+        runs after completion, less the largest distance of one of these runs from the mean of the
+        others.
+        """
+        out = np.full(len(self.measured), -np.inf)
+        for record, known in enumerate(self._cells["known"]):
+            if known.any():
+                power = self._cells["after"][record]
+                others = [_mean(np.delete(power, seed, axis=0)) for seed in range(len(power))]
+                own = [_rms(one - rest, known) for one, rest in zip(power, others, strict=True)]
+                away = _rms(self._cells["measured"][record] - _mean(power), known)
+                out[record] = away - max(own)
+        return out
+
+    @cached_property
+    def _cells(self):
+        """Return {measured (record, channel, band), before, after (record, seed, channel, band):
+        dB; known (record, channel, band) bool: above the noise, and simulated}.
+        """
+        edges = np.searchsorted(self.frequency, self.signals.edges)
+        bands = [(low, max(high, low + 1)) for low, high in pairwise(edges)]
+        sensed = self.noise[:, None, :, None]  # sensors would add it to the simulated response
+        psd = {"measured": self.measured, "before": self.before + sensed}
+        out = {
+            name: _dB(np.stack([each[..., low:high].mean(axis=-1) for low, high in bands], axis=-1))
+            for name, each in (psd | {"after": self.after + sensed}).items()
+        }
+        known = out["measured"] > _dB(self.noise)[..., None] + ABOVE_NOISE_DB
+        for name in ("before", "after"):
+            known &= np.isfinite(out[name]).all(axis=1)
+        return out | {"known": known}
+
+    def distance(
+        self, records: Sequence[int] | np.ndarray, channel: int | None = None
+    ) -> dict[str, float | None]:
+        """Return {before_dB, after_dB, floor_dB, closed_fraction} over records, of all channels
+        unless one is given.
+        """
+        channels = slice(None) if channel is None else [channel]
+        chosen = self._cells["known"][records][:, channels]
+        if not chosen.any():
+            return dict.fromkeys(("before_dB", "after_dB", "floor_dB", "closed_fraction"))
+        measured = self._cells["measured"][records][:, channels]
+        away, floors = [], []
+        for name in ("before", "after"):
+            power = self._cells[name][records][:, :, channels]
+            floors.append(_floor(power, chosen))
+            own = floors[-1] * np.sqrt((1.0 - 1.0 / SEEDS) / 2.0)
+            away.append(float(np.hypot(_rms(measured - _mean(power, axis=1), chosen), own)))
+        return {
+            "before_dB": away[0],
+            "after_dB": away[1],
+            "floor_dB": floors[1],
+            "closed_fraction": closed_fraction(away[0], away[1], floors[1], floors[0]),
+        }
+
+    def regions(self, shown: int) -> list[dict]:
+        """Return the rows of verdict.json's regions: bands in which the model as given is farthest
+        off, in units of the scatter between its runs.
+        """
+        signals, known, before = self.signals, self._cells["known"], self._cells["before"]
+        scatter = np.maximum(np.where(known, np.std(before, axis=1, ddof=1), 0.0), LEAST_SCATTER_DB)
+        off = np.where(known, self._cells["measured"] - _mean(before, axis=1), 0.0)
+        z = off / np.hypot(scatter, np.sqrt(np.mean(scatter**2)))
+        rows = []
+        for flat in np.argsort(-np.abs(z), axis=None)[:shown]:
+            record, channel, band = np.unravel_index(flat, z.shape)
+            gap = float(signals.gap[record])
+            rows.append(
+                {
+                    "band_Hz": [float(signals.edges[band]), float(signals.edges[band + 1])],
+                    "load_rms_N": float(signals.load[record]),
+                    "gap_m": gap if np.isfinite(gap) else None,
+                    "channel": signals.names[channel],
+                    "discrepancy_dB": float(off[record, channel, band]),
+                    "z": float(z[record, channel, band]),
+                    "record": signals.record_names[record],
+                }
+            )
+        return rows
 
 
-def free_runs(structure: Structure, signals: Signals, after: Point | None) -> FreeRuns:
-    """Return the FreeRuns of the model as given and of a Point, None if nothing is completed."""
+def free_runs(structure: Structure, signals: Signals) -> FreeRuns:
+    """Return the FreeRuns of the model as given."""
     frequency, measured = _psd(signals.response[:, None], signals)
     _, before = _psd(_simulated(structure, signals, Point()), signals)
     noise = signals.record_noise**2 / (0.5 * signals.rate)
-    runs = FreeRuns(frequency, measured[:, 0], before, before, noise)
-    return runs if after is None else with_after(runs, structure, signals, after)
-
-
-def with_after(
-    runs: FreeRuns,
-    structure: Structure,
-    signals: Signals,
-    after: Point,
-    records: Sequence[int] | None = None,
-) -> FreeRuns:
-    """Return FreeRuns with another Point after completion; on some records only if given."""
-    values = _simulated(structure, signals, after, records)
-    return replace(runs, after=_psd(values, signals)[1])
-
-
-def surely_off(
-    runs: FreeRuns,
-    structure: Structure,
-    signals: Signals,
-    after: Point,
-    records: Sequence[int] | np.ndarray,
-) -> list[int]:
-    """Return which of some records are farther from the model after completion than its own runs
-    are from one another, the farthest first; after: its Point. It may leave FREE_EXCESS_DB, and
-    LEFT_SHARE of what the model as given leaves: laws of two codes differ.
-
-    Whether a tube whirls may be chance. A record that is off some runs is compared with
-    CHANCE_RUNS of them: if the model whirls with any probability, and the measurement does not (or
-    the reverse), all of them differ from it in 2 % of the records at most.
-    """
-    given = _beyond_chance(replace(runs, after=runs.before), signals)
-    most = FREE_EXCESS_DB + LEFT_SHARE * np.maximum(given, 0.0)
-    beyond = _beyond_chance(runs, signals) - most
-    off = [int(record) for record in records if beyond[record] > 0.0]
-    if off:
-        more = _simulated(structure, signals, after, off, range(SEEDS, CHANCE_RUNS))
-        many = np.concatenate([runs.after, _psd(more, signals)[1]], axis=1)
-        beyond = _beyond_chance(replace(runs, after=many), signals) - most
-    off = [record for record in off if beyond[record] > 0.0]
-    return sorted(off, key=lambda record: -beyond[record])
-
-
-def _beyond_chance(runs, signals):
-    """Return (record,) dB: distance of the measured spectra of a record from the mean of the runs
-    after completion, less the largest distance of one of these runs from the mean of the others.
-    """
-    cells = _in_bands(runs, signals)
-    out = np.full(len(runs.measured), -np.inf)
-    for record, known in enumerate(cells["known"]):
-        if known.any():
-            power = cells["after"][record]
-            others = [np.delete(power, seed, axis=0) for seed in range(len(power))]
-            own = [_rms(one - _mean(rest), known) for one, rest in zip(power, others, strict=True)]
-            out[record] = _rms(cells["measured"][record] - _mean(power), known) - max(own)
-    return out
+    return FreeRuns(signals, frequency, measured[:, 0], before, before, noise, structure)
 
 
 def _simulated(structure, signals, point, records=None, seeds=range(SEEDS)):
@@ -160,63 +223,9 @@ def _psd(values, signals):
     return frequency, out
 
 
-def distance(
-    runs: FreeRuns, signals: Signals, records: Sequence[int] | np.ndarray
-) -> dict[str, float | None]:
-    """Return {before_dB, after_dB, floor_dB, closed_fraction} over records."""
-    return _distance(_in_bands(runs, signals), records, range(len(signals.names)))
-
-
-def distances(runs: FreeRuns, signals: Signals) -> list[dict[str, float | None]]:
-    """Return the rows of `distance` of each record and channel."""
-    cells = _in_bands(runs, signals)
-    records, channels = range(len(signals.load)), range(len(signals.names))
-    return [_distance(cells, [each], [channel]) for each in records for channel in channels]
-
-
-def _distance(cells, records, channels):
-    """Return `distance` over records and channels of the cells of _in_bands."""
-    chosen = cells["known"][records][:, channels]
-    if not chosen.any():
-        return dict.fromkeys(("before_dB", "after_dB", "floor_dB", "closed_fraction"))
-    measured = cells["measured"][records][:, channels]
-    away, floors = [], []
-    for name in ("before", "after"):
-        power = cells[name][records][:, :, channels]
-        floors.append(_floor(power, chosen))
-        mean = _mean(power, axis=1)
-        own = floors[-1] * np.sqrt((1.0 - 1.0 / SEEDS) / 2.0)
-        away.append(float(np.hypot(_rms(measured - mean, chosen), own)))
-    return {
-        "before_dB": away[0],
-        "after_dB": away[1],
-        "floor_dB": floors[1],
-        "closed_fraction": closed_fraction(away[0], away[1], floors[1], floors[0]),
-    }
-
-
-def _in_bands(runs, signals):
-    """Return {measured (record, channel, band), before, after (record, seed, channel, band): dB;
-    known (record, channel, band) bool: above the noise, and simulated}.
-    """
-    edges = np.searchsorted(runs.frequency, signals.edges)
-    bands = [(low, max(high, low + 1)) for low, high in zip(edges[:-1], edges[1:], strict=True)]
-
-    def power(psd):
-        mean = np.stack([psd[..., low:high].mean(axis=-1) for low, high in bands], axis=-1)
-        return 10.0 * np.log10(np.maximum(mean, np.finfo(float).tiny))
-
-    sensed = runs.noise[:, None, :, None]  # the sensors would add it to the simulated response
-    out = {
-        "measured": power(runs.measured),
-        "before": power(runs.before + sensed),
-        "after": power(runs.after + sensed),
-    }
-    noise = 10.0 * np.log10(np.maximum(runs.noise, np.finfo(float).tiny))[..., None]
-    known = out["measured"] > noise + ABOVE_NOISE_DB
-    for name in ("before", "after"):
-        known &= np.isfinite(out[name]).all(axis=1)
-    return out | {"known": known}
+def _dB(power):
+    """Return a power in dB."""
+    return 10.0 * np.log10(np.maximum(power, np.finfo(float).tiny))
 
 
 def _mean(power, axis=0):
@@ -234,30 +243,3 @@ def _floor(power, chosen):
     pairs = combinations(range(power.shape[1]), 2)
     squares = [_rms(power[:, one] - power[:, other], chosen) ** 2 for one, other in pairs]
     return float(np.sqrt(np.mean(squares))) if squares else 0.0
-
-
-def regions(runs: FreeRuns, signals: Signals, shown: int) -> list[dict]:
-    """Return the rows of verdict.json's regions: bands in which the model as given is farthest off,
-    in units of the scatter between its runs.
-    """
-    cells = _in_bands(runs, signals)
-    known, before = cells["known"], cells["before"]
-    scatter = np.maximum(np.where(known, np.std(before, axis=1, ddof=1), 0.0), LEAST_SCATTER_DB)
-    off = np.where(known, cells["measured"] - _mean(before, axis=1), 0.0)
-    z = off / np.hypot(scatter, np.sqrt(np.mean(scatter**2)))
-    rows = []
-    for flat in np.argsort(-np.abs(z), axis=None)[:shown]:
-        record, channel, band = np.unravel_index(flat, z.shape)
-        gap = float(signals.gap[record])
-        rows.append(
-            {
-                "band_Hz": [float(signals.edges[band]), float(signals.edges[band + 1])],
-                "load_rms_N": float(signals.load[record]),
-                "gap_m": gap if np.isfinite(gap) else None,
-                "channel": signals.names[channel],
-                "discrepancy_dB": float(off[record, channel, band]),
-                "z": float(z[record, channel, band]),
-                "record": signals.record_names[record],
-            }
-        )
-    return rows

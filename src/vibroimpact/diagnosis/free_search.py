@@ -7,27 +7,25 @@ to the best hypothesis. This compares statistics of chaotic motion: it finds a p
 value.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
+from operator import attrgetter
 
 import numpy as np
 
+from vibroimpact.diagnosis.verdict.content import NINETY_SD
 from vibroimpact.diagnosis.verdict.misfit import excess
 
 from .bench import Bench, effective_lines, holding_lines, misfit
 from .catalogue import far_terms
 from .comparison import Comparison
-from .completed import NINETY_SD
 from .constants import FREE_RIVAL_DB, LEAST_GAIN, NULL_GAIN, PARTLY
 from .coordinates import Coordinate, effect_coordinates, to_point, to_vector
 from .decision import LEAST_APART, Decision, conclusion, far_off
 from .explanations import Point
-from .free_runs import FreeRuns, distance, surely_off, with_after
+from .free_runs import FreeRuns
 from .gauss_newton import Fit
-from .measurement.signals import Signals
 from .screening import Screened
 from .search import Hypothesis, Search, changes, jackknife
 
@@ -52,6 +50,9 @@ class _Trial:
     reach: float = np.nan
 
 
+_AWAY = attrgetter("away")
+
+
 def free_search(
     comparison: Comparison,
     searched: Search,
@@ -67,16 +68,15 @@ def free_search(
     bring the spectra to their floor: whether a tube whirls can depend on a degree of the direction
     of the force, or on 0.3 % of a frequency.
     """
-    signals, given = comparison.signals, replace(runs, after=runs.before)
-    nothing = decision.verdict in ("none", "unknown") or decision.best is None
-    if nothing and not far(given, signals):
+    given, nothing = runs.as_given, decision.verdict in ("none", "unknown") or decision.best is None
+    if nothing and not far(given):
         return decision, given
     if nothing and runs.after is runs.before:
-        runs = with_after(runs, comparison.structure, signals, searched.nothing.point)
-    if nothing and not far(runs, signals):
+        runs = runs.completed(searched.nothing.point)
+    if nothing and not far(runs):
         log("the fitted nuisances bring the spectra of free runs to their floor")
         return decision, runs if decision.verdict == "none" else given
-    if not nothing and not (decision.surely_off and far(runs, signals)):
+    if not nothing and not (decision.surely_off and far(runs)):
         return decision, runs
     base, chance = (searched.nothing, 1.0) if nothing else decision.ranked[0]
     best = _closest(comparison, searched, base, runs, log)
@@ -97,10 +97,8 @@ def free_search(
         something_else=1.0 - closed,
         by_free_runs=True,
     )
-    structure, point = comparison.structure, ranked[0][0].point
-    runs = with_after(runs, structure, signals, point)
-    off = surely_off(runs, structure, signals, point, range(len(signals.load)))
-    return replace(decision, surely_off=bool(off)), runs
+    runs = runs.completed(ranked[0][0].point)
+    return replace(decision, surely_off=bool(runs.surely_off())), runs
 
 
 def _closest(
@@ -113,13 +111,13 @@ def _closest(
     """Return the trials, one of each set of effects, that bring the spectra of free runs with a
     base near the measured ones, the nearest first; runs: with the base.
     """
-    records = _farthest(comparison, runs)
-    away = distance(runs, comparison.signals, records)["after_dB"]
-    trials = _run(comparison, _candidates(comparison, searched, base), runs, records)
+    records = _farthest(runs)
+    away = runs.distance(records)["after_dB"]
+    trials = _run(_candidates(comparison, searched, base), runs, records)
     scanned = [
         point for trial in trials[:SCANNED] for point in _scan(comparison, trial.point, FACTORS)
     ]
-    trials = sorted([*trials, *_run(comparison, scanned, runs, records)], key=_away)
+    trials = sorted([*trials, *_run(scanned, runs, records)], key=_AWAY)
     trials = _not_contradicted(comparison, base, trials)
     best: dict[tuple[str, ...], _Trial] = {}
     for trial in trials:
@@ -133,17 +131,17 @@ def _closest(
     return [replace(trial, reach=_reach(comparison, trial, trials)) for trial in best.values()]
 
 
-def far(runs: FreeRuns, signals: Signals) -> bool:
+def far(runs: FreeRuns) -> bool:
     """Return whether spectra after completion are known, and far off on the fitted records."""
-    told = distance(runs, signals, signals.fit())
+    told = runs.distance(runs.signals.fit())
     return told["after_dB"] is not None and far_off(told)
 
 
-def _farthest(comparison: Comparison, runs: FreeRuns) -> list[int]:
+def _farthest(runs: FreeRuns) -> list[int]:
     """Return the fitted records whose spectra after completion are farthest above their floor."""
     beyond = {}
-    for record in map(int, comparison.signals.fit()):
-        told = distance(runs, comparison.signals, [record])
+    for record in map(int, runs.signals.fit()):
+        told = runs.distance([record])
         if told["after_dB"] is not None and told["floor_dB"] is not None:
             beyond[record] = told["after_dB"] - told["floor_dB"]
     return sorted(beyond, key=lambda record: -beyond[record])[:RECORDS]
@@ -169,7 +167,13 @@ def _candidates(comparison: Comparison, searched: Search, base: Hypothesis) -> l
         effect = each.point.terms[-1].effect_id
         if each.gain > -OPPOSED * lines and effect not in known:
             queues.setdefault(effect, []).append(each)
-    ordered = [sorted(own, key=lambda each: not _is_far(each, sizes)) for own in queues.values()]
+
+    def near(screened: Screened) -> bool:
+        """Return whether the last term is no trial far from doing nothing."""
+        term = screened.point.terms[-1]
+        return term not in far_terms(term.effect, term.location, sizes)
+
+    ordered = [sorted(own, key=near) for own in queues.values()]
     turns = zip_longest(*(own[:PER_EFFECT] for own in ordered))
     chosen = [each for turn in turns for each in turn if each is not None][:RUN_FREE]
     points = [base.point.beside(each.point.terms[-1]) for each in chosen]
@@ -188,27 +192,18 @@ def _highest(bench: Bench, lines: np.ndarray) -> float:
     return misfit(bench, lines) + LEAST_GAIN * effective_lines(bench, lines)
 
 
-def _is_far(screened: Screened, sizes: Mapping[str, float]) -> bool:
-    """Return whether the last term of a screened point is a trial far from doing nothing."""
-    term = screened.point.terms[-1]
-    return term in far_terms(term.effect, term.location, sizes)
-
-
-def _run(
-    comparison: Comparison, points: Sequence[Point], known: FreeRuns, records: Sequence[int]
-) -> list[_Trial]:
+def _run(points: Sequence[Point], known: FreeRuns, records: Sequence[int]) -> list[_Trial]:
     """Return the trials of points on records, the one nearest to the measured spectra first."""
-    given = distance(known, comparison.signals, records)
+    given = known.distance(records)
     away, scatter = given["after_dB"] or 0.0, given["floor_dB"] or 0.0
     out = []
     for point in points:
-        runs = with_after(known, comparison.structure, comparison.signals, point, records)
-        told = distance(runs, comparison.signals, records)
+        told = known.completed(point, records).distance(records)
         if (after := told["after_dB"]) is not None and (floor := told["floor_dB"]) is not None:
             # a floor that grows, as when one run whirls and another does not, closes nothing
             closed = 1.0 - excess(after, min(floor, scatter)) / max(excess(away, scatter), 1.0e-9)
             out.append(_Trial(point, after, closed))
-    return sorted(out, key=_away)
+    return sorted(out, key=_AWAY)
 
 
 def _not_contradicted(
@@ -221,25 +216,18 @@ def _not_contradicted(
     return [t for t, own in zip(trials, after, strict=True) if misfit(bench, own) < highest]
 
 
-def _away(trial: _Trial) -> float:
-    """Return the distance of a trial's spectra."""
-    return trial.away
-
-
-def _first_value(point: Point, rows: Sequence[Coordinate]) -> int:
-    """Return the number of the coordinate of the first parameter of the last term."""
-    return next(
-        number
-        for number, row in enumerate(rows)
-        if row.kind == "term" and row.index == len(point.terms) - 1
-    )
+def _coordinates(comparison: Comparison, point: Point) -> tuple[list[Coordinate], np.ndarray, int]:
+    """Return the coordinates of all terms, their values, and the number of the one of the first
+    parameter of the last term.
+    """
+    rows = effect_coordinates(point.terms, comparison.sizes)
+    places = [(row.kind, row.index) for row in rows]
+    return rows, to_vector(point, rows), places.index(("term", len(point.terms) - 1))
 
 
 def _scan(comparison: Comparison, point: Point, factors: Sequence[float]) -> list[Point]:
     """Return a Point with the first parameter of its last term multiplied by factors."""
-    rows = effect_coordinates(point.terms, comparison.sizes)
-    x, at = to_vector(point, rows), _first_value(point, rows)
-    out = []
+    (rows, x, at), out = _coordinates(comparison, point), []
     for factor in factors:
         moved = x.copy()
         value = factor * rows[at].to_value(x[at])
@@ -252,8 +240,7 @@ def _hypothesis(
     comparison: Comparison, nothing: Hypothesis, base: Hypothesis, own: _Trial
 ) -> Hypothesis:
     """Return the Hypothesis of a trial in addition to a base, compared with nothing."""
-    rows = effect_coordinates(own.point.terms, comparison.sizes)
-    x, at = to_vector(own.point, rows), _first_value(own.point, rows)
+    rows, x, at = _coordinates(comparison, own.point)
     known = len(effect_coordinates(base.point.terms, comparison.sizes))
     deviation = np.ones(len(rows))
     if known:
@@ -272,9 +259,8 @@ def _reach(comparison: Comparison, own: _Trial, trials: Sequence[_Trial]) -> flo
     """Return the half width of the interval of the first value of the last term of a trial: up to
     the nearest worse values on both sides of all that are as good.
     """
-    rows = effect_coordinates(own.point.terms, comparison.sizes)
-    at = _first_value(own.point, rows)
-    x = to_vector(own.point, rows)[at]
+    rows, own_x, at = _coordinates(comparison, own.point)
+    x = own_x[at]
     tried = [
         (to_vector(trial.point, rows)[at], trial.away - own.away < FREE_RIVAL_DB)
         for trial in trials

@@ -78,20 +78,19 @@ class HeldTwice:
         """Return {force channel: (2, stretch, sample) N}: the virtual and the measured force along
         it, in the band of the motion that is held.
         """
-        return {channel.name: self._side_by_side(channel) for channel in self.channels}
-
-    def _side_by_side(self, channel):
         rates, rate, top = self.holder.rates, self.holder.signals.rate, self.holder.band[1]
         runs, _, samples = self.run.runs.support_force.shape
-        own = self.run.support_force[2 * channel.support : 2 * channel.support + 2]
-        first = round(self.run.first_s * rate)
-        count = runs * samples * rates.decimation
-        measured = channel.records[self.run.record][first : first + count]
-        both = (
-            _low_pass(np.nan_to_num(channel.weights @ own), top / rates.sampling),
-            _low_pass(measured, top / rate)[:: rates.decimation],
-        )
-        return np.stack([series.reshape(runs, samples) for series in both])
+        first, count = round(self.run.first_s * rate), runs * samples * rates.decimation
+        out = {}
+        for channel in self.channels:
+            own = self.run.support_force[2 * channel.support : 2 * channel.support + 2]
+            measured = channel.records[self.run.record][first : first + count]
+            both = (
+                _low_pass(np.nan_to_num(channel.weights @ own), top / rates.sampling),
+                _low_pass(measured, top / rate)[:: rates.decimation],
+            )
+            out[channel.name] = np.stack([series.reshape(runs, samples) for series in both])
+        return out
 
 
 def _low_pass(series, highest):
@@ -123,14 +122,14 @@ def estimates(record: HeldTwice, chosen: np.ndarray) -> dict[Key, float]:
                 out[support, "", f"secant_damping_{direction.direction}"] = secant.c
     for channel in record.channels:
         virtual, measured = record.side_by_side[channel.name][:, chosen]
-        out |= _of_channel(channel, virtual)
+        out |= of_channel(channel, virtual)
         together = np.sqrt(np.mean(virtual**2) * np.mean(measured**2))
         alike = float(np.mean(virtual * measured) / together) if together > 0.0 else np.nan
         out[channel.support, channel.name, "correlation"] = alike
     return out
 
 
-def _of_channel(channel, force) -> dict[Key, float]:
+def of_channel(channel: ForceChannel, force: np.ndarray) -> dict[Key, float]:
     """Return {Key: value} of the force (stretch, sample) N along a channel."""
     size = np.abs(force)
     found = {
@@ -139,14 +138,6 @@ def _of_channel(channel, force) -> dict[Key, float]:
         "peak_force": size.max(),
     }
     return {(channel.support, channel.name, name): float(value) for name, value in found.items()}
-
-
-def measured_of(record: HeldTwice, chosen: np.ndarray) -> dict[Key, float]:
-    """Return {Key: value} of the measured contact forces."""
-    out: dict[Key, float] = {}
-    for channel in record.channels:
-        out |= _of_channel(channel, record.side_by_side[channel.name][1, chosen])
-    return out
 
 
 def with_interval(

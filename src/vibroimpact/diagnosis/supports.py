@@ -30,11 +30,11 @@ from .support_statistics import (
     agreement_of,
     estimates,
     force_channels,
-    measured_of,
+    of_channel,
     unseen_of,
     with_interval,
 )
-from .whole_records import STRENGTH, first_mode_Hz, holder
+from .whole_records import STRENGTH, Holder, first_mode_Hz
 
 AGREEMENT = 0.95  # least correlation of the forces under two strengths
 KNOWN = 0.5  # least share of signal in a channel
@@ -123,13 +123,13 @@ def virtual_supports(
     own = campaign.isel(channel=held)
     signals = signals_of(own)
     structure = Structure(config, own)
-    holding = holder(structure, signals, Point())
+    holding = Holder(structure, signals, Point())
     if problems := [*_unusable(holding)]:
         raise CampaignError("\n".join(problems))
     if calibrate:
         comparison = Comparison(signals, structure)
         fitted = fit(comparison.fitted(), Point(), comparison.nuisances(), PASSES)
-        holding = holder(structure, signals, fitted.point)
+        holding = Holder(structure, signals, fitted.point)
     channels, unplaced = force_channels(campaign, holding.model)
     notes += unplaced
     directions = support_directions(holding.model, "each")
@@ -224,8 +224,12 @@ def _values(record: HeldTwice) -> Iterator[SupportValue]:
     if not len(fine):
         return
     found = with_interval(lambda chosen: estimates(record, chosen), fine)
-    measured, agreement = measured_of(record, fine), agreement_of(record, fine)
-    unseen = unseen_of(record)
+    agreement, unseen = agreement_of(record, fine), unseen_of(record)
+    measured = {
+        key: value
+        for channel in record.channels
+        for key, value in of_channel(channel, record.side_by_side[channel.name][1, fine]).items()
+    }
     for support in range(len(supports)):
         found[support, "", "agreement"] = float(agreement[support]), np.nan, np.nan
     for key in sorted(found, key=lambda key: key[:2]):

@@ -1,19 +1,19 @@
 """Whole records held to their measurement, cut in stretches that are held independently."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vibroimpact.integration.held_run import HeldLane, HeldRecords, hold
+from vibroimpact.integration.held_run import HeldRecords, hold
 from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.reduction.modal_model import ModalModel
 
-from .bench import undelayed
+from .bench import Bench, lane_of
 from .constants import FORGET_S
 from .explanations import Point, Structure
 from .measurement.sensed_motion import orders
 from .measurement.signals import Signals
-from .measurement.stretches import FADE_S, Rates, held_band, rates_of, stretches_of, valid_samples
+from .measurement.stretches import FADE_S, held_band, rates_of, stretches_of, valid_samples
 
 STRETCHES = LANES  # of a record: they fill the lanes of one batch
 # Of the dampers, in units of the first mode, see Holder.unit_strength. Measured, correlation with
@@ -42,19 +42,18 @@ class Held:
         return np.concatenate(list(self.runs.support_force), axis=-1)
 
 
-@dataclass(frozen=True, eq=False)
 class Holder:
     """Holds records of a campaign to their measurement, under the model of one Point.
 
     model: of the point. rates, band (low, high) in Hz: of the motion that is held.
     """
 
-    structure: Structure
-    signals: Signals
-    point: Point
-    model: ModalModel
-    rates: Rates
-    band: tuple[float, float]
+    def __init__(self, structure: Structure, signals: Signals, point: Point):
+        self.structure, self.signals, self.point = structure, signals, point
+        self.model = structure.model(point)
+        steps = structure.config.integration.steps_per_second
+        self.rates = rates_of(signals.rate, steps, structure.decimation)
+        self.band = held_band(signals, self.rates, first_mode_Hz(self.model))
 
     def stretch_times(self, record: int) -> tuple[float, float]:
         """Return (first_s, duration_s) of STRETCHES stretches that cover a record as far as its
@@ -70,32 +69,23 @@ class Holder:
 
     def hold(self, record: int, factor: float = STRENGTH) -> Held:
         """Return the Held of a record; factor: strength in units of unit_strength."""
-        rates, config = self.rates, self.structure.config
+        rates, structure = self.rates, self.structure
         first, duration = self.stretch_times(record)
         lead = np.ceil(FORGET_S * rates.sampling) / rates.sampling
         starts = first + duration * np.arange(STRETCHES)
         places = [(record, float(start - lead)) for start in starts]
-        stretches = stretches_of(
-            self.signals, places, lead + duration, self.band, rates, self.structure.scale
-        )
+        where = self.band, rates, structure.scale
+        stretches = stretches_of(self.signals, places, lead + duration, *where)
         settled = round(lead * rates.steps_per_second)
         known = self._share_known([stretch.motion[settled:] for stretch in stretches])
         strength = factor * self.unit_strength() * known
-        chain = self.structure.measuring(self.point)
-        lanes = [
-            HeldLane(
-                self.model,
-                stretch.gap,
-                stretch.force,
-                undelayed(stretch.motion, chain.delay, rates.steps_per_second),
-                strength,
-                1.0 / chain.gain,
-                1.0 / chain.force_gain,
-            )
-            for stretch in stretches
-        ]
-        schedule = rates.schedule(duration, config.integration.scheme, lead)
-        runs = hold(lanes, schedule, highest_Hz=self.band[1])
+        schedule = rates.schedule(duration, structure.config.integration.scheme, lead)
+        bench = Bench(structure, tuple(stretches), schedule, self.band, 0.0)
+        lanes = (
+            lane_of(bench, each, self.model, structure.measuring(self.point)) for each in stretches
+        )
+        held = [replace(lane, strength=strength) for lane in lanes]
+        runs = hold(held, schedule, highest_Hz=self.band[1])
         return Held(record, first, strength, known, runs)
 
     def unit_strength(self) -> float:
@@ -122,15 +112,6 @@ class Holder:
         noise = np.sqrt(density * np.trapezoid(factor, frequency, axis=-1)) * self.structure.scale
         share = np.divide(noise, speed, out=np.ones_like(speed), where=speed > 0.0)
         return np.maximum(1.0 - share**2, 0.0)
-
-
-def holder(structure: Structure, signals: Signals, point: Point) -> Holder:
-    """Return the Holder of the records of a campaign."""
-    model = structure.model(point)
-    steps = structure.config.integration.steps_per_second
-    rates = rates_of(signals.rate, steps, structure.decimation)
-    band = held_band(signals, rates, first_mode_Hz(model))
-    return Holder(structure, signals, point, model, rates, band)
 
 
 def first_mode_Hz(model: ModalModel) -> float:

@@ -9,14 +9,9 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
     across it.
     """
     along = places.across_deg(values, location)
-    support = {
-        "name": places.STOP,
-        **places.support_at(values, location),
-        "stiffness_N_per_m": parameters["stiffness"],
-        "gap_m": parameters["half_gap"],
-        "profile": {"kind": "planes", "normals_deg": [along, along - 180.0]},
-    }
-    return values | {"supports": [*values["supports"], support]}
+    return places.with_stops(
+        values, location, parameters["stiffness"], parameters["half_gap"], [along, along - 180.0]
+    )
 
 
 EFFECT = Effect(

@@ -1,15 +1,7 @@
 """Kelvin-Voigt damping of a support: it pushes, and never pulls."""
 
 from . import places
-from .effect import Effect, Parameter, Values
-
-
-def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
-    """Return the configuration with the total damping of the supports of a location."""
-    return places.with_supports(
-        values, location, lambda support: {"damping_N_s_per_m": parameters["damping"]}
-    )
-
+from .effect import Effect, Parameter
 
 EFFECT = Effect(
     id="contact_damping",
@@ -28,7 +20,7 @@ EFFECT = Effect(
             meaning="damping of a support, total of its contact points",
         ),
     ),
-    apply=apply,
+    apply=places.at_supports(lambda own: {"damping_N_s_per_m": own["damping"]}),
     locations=places.supports,
     aliases=("hunt_crossley",),
     broken=("T5",),

@@ -1,15 +1,7 @@
 """The stiffness of a support."""
 
 from . import places
-from .effect import Effect, Parameter, Values
-
-
-def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
-    """Return the configuration with the total stiffness of the supports of a location."""
-    return places.with_supports(
-        values, location, lambda support: {"stiffness_N_per_m": parameters["stiffness"]}
-    )
-
+from .effect import Effect, Parameter
 
 EFFECT = Effect(
     id="contact_stiffness",
@@ -28,7 +20,7 @@ EFFECT = Effect(
             meaning="stiffness of a support, total of its contact points",
         ),
     ),
-    apply=apply,
+    apply=places.at_supports(lambda own: {"stiffness_N_per_m": own["stiffness"]}),
     locations=places.supports,
     aliases=("hertz", "plate_flexibility"),
 )

@@ -1,21 +1,9 @@
 """Dry friction of constant force at a point."""
 
 from . import places
-from .effect import Effect, Parameter, Values
+from .effect import Effect, Parameter
 
 STICK_PER_FORCE = 1.0e5  # 1/m: it slips after 10 micrometres
-
-
-def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
-    """Return the configuration with a slider between a point and the ground, along the force."""
-    laws = {
-        "slip_limit_N": parameters["force"],
-        "stick_stiffness_N_per_m": STICK_PER_FORCE * parameters["force"],
-    }
-    return places.with_element(
-        values, "coulomb_friction", location, places.across(values, location), **laws
-    )
-
 
 EFFECT = Effect(
     id="coulomb_friction",
@@ -36,7 +24,13 @@ EFFECT = Effect(
             meaning="force at which it slips",
         ),
     ),
-    apply=apply,
+    apply=places.at_a_point(
+        "coulomb_friction",
+        lambda own: {
+            "slip_limit_N": own["force"],
+            "stick_stiffness_N_per_m": STICK_PER_FORCE * own["force"],
+        },
+    ),
     below_contact=True,
     broken=("T1", "T2", "T5"),
     aliases=("saturation_stiffness", "dry_friction"),

@@ -1,21 +1,7 @@
 """A spring that stiffens with the cube of its stretch."""
 
 from . import places
-from .effect import Effect, Parameter, Values
-
-
-def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
-    """Return the configuration with a cubic spring between a point and the ground, along the
-    force.
-    """
-    return places.with_element(
-        values,
-        "cubic_stiffness",
-        location,
-        places.across(values, location),
-        cubic_N_per_m3=parameters["coefficient"],
-    )
-
+from .effect import Effect, Parameter
 
 EFFECT = Effect(
     id="cubic_stiffness",
@@ -36,7 +22,7 @@ EFFECT = Effect(
             meaning="coefficient of the cube",
         ),
     ),
-    apply=apply,
+    apply=places.at_a_point("cubic_stiffness", lambda own: {"cubic_N_per_m3": own["coefficient"]}),
     below_contact=True,
     broken=("T1", "T2"),
     aliases=("clearance",),

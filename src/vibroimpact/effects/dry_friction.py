@@ -1,13 +1,7 @@
 """Coulomb friction of the contact, in proportion to its force."""
 
 from . import places
-from .effect import Effect, Parameter, Values
-
-
-def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
-    """Return the configuration with friction at the supports of a location."""
-    return places.with_supports(values, location, lambda support: {"friction": parameters["mu"]})
-
+from .effect import Effect, Parameter
 
 EFFECT = Effect(
     id="dry_friction",
@@ -16,7 +10,7 @@ EFFECT = Effect(
     law="tangential stick spring of the contact stiffness that slips at mu times the normal force",
     source="Coulomb friction",
     parameters=(Parameter("mu", "1", 0.01, 1.0, 0.0, meaning="coefficient of friction"),),
-    apply=apply,
+    apply=places.at_supports(lambda own: {"friction": own["mu"]}),
     locations=places.supports,
     broken=("T5",),
     aliases=("coulomb_friction", "foliate_obstacle"),

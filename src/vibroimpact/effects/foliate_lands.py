@@ -3,19 +3,8 @@
 import math
 
 from . import places
-from .effect import Effect, Parameter, Values
+from .effect import Effect, Parameter
 from .foliate_obstacle import LOBES
-
-
-def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
-    """Return the configuration with four flat lands at the supports of a location, as far from the
-    centre as the circle was.
-    """
-    normals = [math.degrees(parameters["angle"]) + 360.0 / LOBES * land for land in range(LOBES)]
-    return places.with_supports(
-        values, location, lambda support: {"profile": {"kind": "planes", "normals_deg": normals}}
-    )
-
 
 EFFECT = Effect(
     id="foliate_lands",
@@ -39,7 +28,16 @@ EFFECT = Effect(
             meaning="direction of the first land",
         ),
     ),
-    apply=apply,
+    apply=places.at_supports(
+        lambda own: {
+            "profile": {
+                "kind": "planes",
+                "normals_deg": [
+                    math.degrees(own["angle"]) + 360.0 / LOBES * land for land in range(LOBES)
+                ],
+            }
+        }
+    ),
     locations=places.holes,
     broken=("T4",),
     aliases=("dry_friction",),

@@ -3,23 +3,7 @@
 import math
 
 from . import places
-from .effect import Apply, Effect, Parameter, Values
-
-
-def with_lobes(count: int) -> Apply:
-    """Return the function that gives supports a hole of so many lobes."""
-
-    def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
-        """Return the configuration with lobes at the supports of a location."""
-        profile = {
-            "kind": "lobes",
-            "count": count,
-            "depth_m": parameters["depth"],
-            "angle_deg": math.degrees(parameters["angle"]),
-        }
-        return places.with_supports(values, location, lambda support: {"profile": profile})
-
-    return apply
+from .effect import Effect, Parameter
 
 
 def lobed(count: int, id: str, source: str) -> Effect:
@@ -56,7 +40,16 @@ def lobed(count: int, id: str, source: str) -> Effect:
                 meaning="direction of the first land",
             ),
         ),
-        apply=with_lobes(count),
+        apply=places.at_supports(
+            lambda own: {
+                "profile": {
+                    "kind": "lobes",
+                    "count": count,
+                    "depth_m": own["depth"],
+                    "angle_deg": math.degrees(own["angle"]),
+                }
+            }
+        ),
         locations=places.holes,
         broken=("T4",) if count % 2 == 0 else ("T3", "T4"),
         aliases=("dry_friction",),

@@ -10,16 +10,12 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
 
     def change(support: Values) -> Values:
         own = {} if support["gap_m"] is None else {"gap_m": factor * support["gap_m"]}
-        return own | {"gap_factor": _times(support["gap_factor"], factor)}
+        given = support["gap_factor"]  # a number, or one per contact point
+        several = isinstance(given, (list, tuple))
+        times = [factor * value for value in given] if several else factor * given
+        return own | {"gap_factor": times}
 
     return places.with_supports(values, location, change)
-
-
-def _times(given: float | list[float], factor: float) -> float | list[float]:
-    """A number, or a list of them, times a factor."""
-    return (
-        [factor * value for value in given] if isinstance(given, (list, tuple)) else factor * given
-    )
 
 
 EFFECT = Effect(

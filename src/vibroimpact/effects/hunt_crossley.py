@@ -1,15 +1,7 @@
 """Hunt-Crossley damping of a support: it grows with the indentation."""
 
 from . import places
-from .effect import Effect, Parameter, Values
-
-
-def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
-    """Return the configuration with Hunt-Crossley damping at the supports of a location."""
-    return places.with_supports(
-        values, location, lambda support: {"hunt_crossley_s_per_m": parameters["alpha"]}
-    )
-
+from .effect import Effect, Parameter
 
 EFFECT = Effect(
     id="hunt_crossley",
@@ -30,7 +22,7 @@ EFFECT = Effect(
             meaning="damping over stiffness and indentation",
         ),
     ),
-    apply=apply,
+    apply=places.at_supports(lambda own: {"hunt_crossley_s_per_m": own["alpha"]}),
     locations=places.supports,
     aliases=("contact_damping",),
     broken=("T2", "T5"),

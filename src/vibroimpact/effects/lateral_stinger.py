@@ -16,18 +16,13 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
     """Return the configuration with a spring and a damper at the drive point, along a global axis
     or the force.
     """
+    force = values["excitation"]
     laws = {
         "stiffness_N_per_m": parameters["stiffness"],
         "damping_N_s_per_m": parameters["damping"],
     }
-    return places.with_element(
-        values, "lateral_stinger", values["excitation"]["point"], _held(values, location), **laws
-    )
-
-
-def _held(values, location):
-    """Return the direction (3,) that a rod holds."""
-    return values["excitation"]["direction"] if location == ALONG_FORCE else AXES[location]
+    held = AXES.get(location) or force["direction"]  # along_force is no axis
+    return places.with_element(values, "lateral_stinger", force["point"], held, **laws)
 
 
 def locations(values: Values) -> list[str]:

@@ -10,14 +10,8 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
     """Return the configuration with a flat stop at a point, in the direction of the force there; a
     location that is turned by 180 degrees has it on the other side.
     """
-    support = {
-        "name": places.STOP,
-        **places.support_at(values, location),
-        "stiffness_N_per_m": parameters["stiffness"],
-        "gap_m": parameters["gap"],
-        "profile": {"kind": "planes", "normals_deg": [places.across_deg(values, location)]},
-    }
-    return values | {"supports": [*values["supports"], support]}
+    along = places.across_deg(values, location)
+    return places.with_stops(values, location, parameters["stiffness"], parameters["gap"], [along])
 
 
 GAP, STIFFNESS = clearance.EFFECT.parameters

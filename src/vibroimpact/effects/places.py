@@ -13,7 +13,7 @@ from vibroimpact.config.structure import Path, UTube
 from vibroimpact.geometry.centreline import Centreline, build_centreline
 from vibroimpact.geometry.directions import transverse_directions, unit_vector
 
-from .effect import Values
+from .effect import Apply, Values
 
 STOP = "clearance_stop"  # name of the support that the effect clearance adds
 SHARES = (0.0625, 0.1875, 0.3125, 0.4375)  # of the limit of an element that is split
@@ -48,22 +48,14 @@ def holes(values: Values) -> list[str]:
     """Return the places of an effect that turns obstacles into others: those of `supports` that do
     not press at rest, which only the flat lands that they have can do.
     """
-    pressing = [support["name"] for support in values["supports"] if _presses(support)]
-    if not pressing:
+    free = []
+    for support in values["supports"]:
+        gap = support.get("gap_m")
+        if support.get("preload_N") is None and (gap is None or gap > 0.0):
+            free.append(support["name"])
+    if len(free) == len(values["supports"]):
         return supports(values)
-    names = [support["name"] for support in values["supports"] if support["name"] != STOP]
-    return [name for name in names if name not in pressing]
-
-
-def _presses(support: Values) -> bool:
-    """Return whether a support touches or presses the structure at rest."""
-    gap = support.get("gap_m")
-    return support.get("preload_N") is not None or (gap is not None and gap <= 0.0)
-
-
-def driven(values: Values) -> list[str]:
-    """Return the name of the drive point."""
-    return [values["excitation"]["point"]]
+    return [name for name in free if name != STOP]
 
 
 def masses_and_springs(values: Values) -> list[str]:
@@ -104,6 +96,18 @@ def with_supports(values: Values, location: str, change: Callable[[Values], Valu
     }
 
 
+def at_supports(keys_of: Callable[[dict[str, float]], Values]) -> Apply:
+    """Return the `apply` of an effect that sets keys of the supports of a location.
+
+    keys_of(parameters): {key: value} of each of them.
+    """
+
+    def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
+        return with_supports(values, location, lambda support: keys_of(parameters))
+
+    return apply
+
+
 def sits_at(support: Values, location: str) -> bool:
     """Return whether a support is at a location: a name, or "all" for every support but the stop
     that an effect has added.
@@ -122,6 +126,19 @@ def with_element(
         return values
     element = {"point": point, "direction": list(direction), **laws}
     return with_entry(values, "elements", name, element)
+
+
+def at_a_point(name: str, laws_of: Callable[[dict[str, float]], Values]) -> Apply:
+    """Return the `apply` of an effect that is a local element between a point and the ground, along
+    the force.
+
+    laws_of(parameters): {key of an element: value}.
+    """
+
+    def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
+        return with_element(values, name, location, across(values, location), **laws_of(parameters))
+
+    return apply
 
 
 def with_mass(values: Values, name: str, point: str, mass_kg: float) -> Values:
@@ -244,23 +261,32 @@ def start_direction(values: Values) -> np.ndarray | None:
     return _centreline(values).direction(0.0)
 
 
-def support_at(values: Values, point: str) -> Values:
-    """Return the keys of a support of one contact point at a named point."""
-    if values["structure"]["kind"] not in TUBES:
-        return {"point": point}
-    return {"at_m": list(values["points"][point]), "height_m": 0.002, "points": 1}
+def with_stops(
+    values: Values, point: str, stiffness: float, gap: float, normals_deg: list[float]
+) -> Values:
+    """Return the configuration with a support of flat stops at a named point.
+
+    stiffness: N/m. gap: m. normals_deg: of the stops, see across_deg.
+    """
+    place: Values = {"point": point}
+    if values["structure"]["kind"] in TUBES:
+        place = {"at_m": list(values["points"][point]), "height_m": 0.002, "points": 1}
+    support = {
+        "name": STOP,
+        **place,
+        "stiffness_N_per_m": stiffness,
+        "gap_m": gap,
+        "profile": {"kind": "planes", "normals_deg": normals_deg},
+    }
+    return values | {"supports": [*values["supports"], support]}
 
 
 def across_deg(values: Values, point: str) -> float:
     """Return the angle in degrees of that direction between the two axes of a support at a point:
     those of a tube turn with it, those of another structure are x and y.
     """
-    if values["structure"]["kind"] not in TUBES:
-        first, second, _ = values["excitation"]["direction"]
-        return float(np.rad2deg(np.arctan2(second, first)))
-    line = _centreline(values)
-    axes = transverse_directions(line.direction(line.locate(values["points"][point], point)))
-    first, second = axes @ _carried(values, point)
+    direction = np.asarray(across(values, point), dtype=float)
+    first, second = axes_across(values, values["points"][point]) @ direction
     return float(np.rad2deg(np.arctan2(second, first)))
 
 

@@ -1,18 +1,7 @@
 """A plate that gives way: a mass on a spring carries the support."""
 
 from . import places
-from .effect import Effect, Parameter, Values
-
-
-def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
-    """Return the configuration with the supports of a location on a plate of mass and stiffness."""
-    plate = {
-        "mass_kg": parameters["mass"],
-        "stiffness_N_per_m": parameters["stiffness"],
-        "damping_ratio": parameters["damping_ratio"],
-    }
-    return places.with_supports(values, location, lambda support: {"plate": plate})
-
+from .effect import Effect, Parameter
 
 EFFECT = Effect(
     id="plate_flexibility",
@@ -42,7 +31,15 @@ EFFECT = Effect(
         ),
         Parameter("damping_ratio", "1", 0.005, 0.29, None, meaning="damping ratio of the plate"),
     ),
-    apply=apply,
+    apply=places.at_supports(
+        lambda own: {
+            "plate": {
+                "mass_kg": own["mass"],
+                "stiffness_N_per_m": own["stiffness"],
+                "damping_ratio": own["damping_ratio"],
+            }
+        }
+    ),
     locations=places.supports,
     aliases=("contact_stiffness",),
 )

@@ -1,21 +1,7 @@
 """A spring that is stiffer on one side."""
 
 from . import places
-from .effect import Effect, Parameter, Values
-
-
-def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
-    """Return the configuration with a quadratic spring between a point and the ground, along the
-    force.
-    """
-    return places.with_element(
-        values,
-        "quadratic_stiffness",
-        location,
-        places.across(values, location),
-        quadratic_N_per_m2=parameters["coefficient"],
-    )
-
+from .effect import Effect, Parameter
 
 EFFECT = Effect(
     id="quadratic_stiffness",
@@ -37,7 +23,9 @@ EFFECT = Effect(
             meaning="coefficient of the square",
         ),
     ),
-    apply=apply,
+    apply=places.at_a_point(
+        "quadratic_stiffness", lambda own: {"quadratic_N_per_m2": own["coefficient"]}
+    ),
     below_contact=True,
     broken=("T1", "T2", "T3"),
     aliases=("support_offset", "preload"),

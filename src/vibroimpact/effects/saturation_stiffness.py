@@ -1,21 +1,7 @@
 """A spring whose force saturates."""
 
 from . import places
-from .effect import Effect, Parameter, Values
-
-
-def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
-    """Return the configuration with a saturating spring between a point and the ground, along the
-    force.
-    """
-    laws = {
-        "saturation_stiffness_N_per_m": parameters["stiffness"],
-        "saturation_limit_N": parameters["limit"],
-    }
-    return places.with_element(
-        values, "saturation_stiffness", location, places.across(values, location), **laws
-    )
-
+from .effect import Effect, Parameter
 
 EFFECT = Effect(
     id="saturation_stiffness",
@@ -45,7 +31,13 @@ EFFECT = Effect(
             meaning="largest force",
         ),
     ),
-    apply=apply,
+    apply=places.at_a_point(
+        "saturation_stiffness",
+        lambda own: {
+            "saturation_stiffness_N_per_m": own["stiffness"],
+            "saturation_limit_N": own["limit"],
+        },
+    ),
     below_contact=True,
     broken=("T1", "T2"),
     aliases=("coulomb_friction", "lateral_stinger"),

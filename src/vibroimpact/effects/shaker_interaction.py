@@ -1,6 +1,8 @@
 """The shaker's moving parts belong to the structure."""
 
-from . import places
+from dataclasses import replace
+
+from . import lateral_stinger, places
 from .effect import Effect, Parameter, Values
 
 
@@ -16,6 +18,7 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
     )
 
 
+STIFFNESS, DAMPING = lateral_stinger.EFFECT.parameters
 EFFECT = Effect(
     id="shaker_interaction",
     family="force",
@@ -24,30 +27,13 @@ EFFECT = Effect(
     source="G.R. Tomlinson, JSV 63 (1979)",
     parameters=(
         Parameter("mass", "kg", 0.002, 0.5, 0.0, per="mass", meaning="mass of the armature"),
-        Parameter(
-            "stiffness",
-            "N/m",
-            0.02,
-            20.0,
-            0.0,
-            per="tube_translation",
-            meaning="stiffness of its suspension",
-        ),
-        Parameter(
-            "damping",
-            "N s/m",
-            0.0,
-            1.0,
-            0.0,
-            per="tube_damping",
-            log=False,
-            meaning="damping of its suspension",
-        ),
+        replace(STIFFNESS, meaning="stiffness of its suspension"),
+        replace(DAMPING, meaning="damping of its suspension"),
     ),
     apply=apply,
     linear=True,
     broken=("T1",),
     needs=("force", "voltage"),
     aliases=("added_mass", "lateral_stinger"),
-    locations=places.driven,
+    locations=lambda values: [values["excitation"]["point"]],
 )

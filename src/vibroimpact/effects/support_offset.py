@@ -1,19 +1,7 @@
 """A support whose centre is off the axis of the tube."""
 
 from . import places
-from .effect import Effect, Parameter, Values
-
-
-def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
-    """Return the configuration with the centres of a location moved; x and y are the support's two
-    transverse directions.
-    """
-    return places.with_supports(
-        values,
-        location,
-        lambda support: {"centre_offset_m": [parameters["offset_x"], parameters["offset_y"]]},
-    )
-
+from .effect import Effect, Parameter
 
 EFFECT = Effect(
     id="support_offset",
@@ -35,7 +23,7 @@ EFFECT = Effect(
         )
         for axis, word in (("x", "first"), ("y", "second"))
     ),
-    apply=apply,
+    apply=places.at_supports(lambda own: {"centre_offset_m": [own["offset_x"], own["offset_y"]]}),
     locations=places.supports,
     broken=("T2", "T3", "T4"),
     aliases=("preload",),

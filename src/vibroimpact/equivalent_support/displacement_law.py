@@ -6,22 +6,33 @@ would move `held` gaps RMS at its plates, if the tube without supports would mov
 `held` against `level` is taken from one study, and k of another tube then follows from its own
 linear response. It approaches `level` if the tube hardly touches (k = 0), and about 1.5 if it
 rattles. The damping is given as a loss factor, c omega / k with omega the first frequency on k.
+
+displacement_law.json, the law that ships with the package, and its measured errors,
+displacement_law_errors.csv, are made by the target `equivalent_law` of the workflow from the
+default study and from the tubes of config/validation/other_tubes.yaml.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from vibroimpact.identify.linear.modes import contact_matrix, driven_block
 from vibroimpact.identify.linear.support_groups import driven_direction
-from vibroimpact.identify.statistical_linearisation import band_power
+from vibroimpact.identify.statistical_linearisation import power_in_band
+from vibroimpact.io.records import read_text
 from vibroimpact.reduction.modal_model import ModalModel
 
 STEPS_PER_DECADE = 24  # of the stiffnesses at which the linear tube is computed
 LOWEST_SHARE = 1.0e-6  # of the contact stiffness; a softer support counts as none
+LAW_FILE = Path(__file__).with_name("displacement_law.json")
+RATIOS = ("k_median", "k_low", "k_high", "c_median", "c_low", "c_high")
 
 
 @dataclass(frozen=True)
@@ -69,7 +80,7 @@ def held_tube(model: ModalModel, band_Hz: Sequence[float]) -> HeldTube:
     """Return the HeldTube of a model under a force of flat PSD in a band.
 
     The displacement is the root mean square over the plates of each one's mean; the damping is
-    modal. Its integral over the band is in closed form (band_power). Values are NaN if a mode is
+    modal. Its integral over the band is in closed form (power_in_band). Values are NaN if a mode is
     overdamped.
     """
     contact = max(np.bincount(model.support_of_point, model.contact_stiffness))
@@ -81,15 +92,10 @@ def held_tube(model: ModalModel, band_Hz: Sequence[float]) -> HeldTube:
     places, drive = plate_shapes(model)[modes], model.drive_shapes[modes, 0]
     motion, omega = np.zeros(stiffness.size), np.zeros(stiffness.size)
     for number, k in enumerate(stiffness):
-        square, vectors = np.linalg.eigh(np.diag(model.omega[modes] ** 2) + k * support)
-        decay = 0.5 * (vectors**2).T @ model.damping[modes]
-        if np.any(square <= decay**2):
-            motion[number], omega[number] = np.nan, np.nan
-            continue
-        poles = -decay + 1j * np.sqrt(square - decay**2)
-        gains = (places.T @ vectors) * (vectors.T @ drive)
-        power = band_power(poles, gains, band_Hz) / (band_Hz[1] - band_Hz[0])
-        motion[number], omega[number] = np.sqrt(power.mean()), np.sqrt(square[0])
+        held = np.diag(model.omega[modes] ** 2) + k * support
+        power, own, _ = power_in_band(held, model.damping[modes], places, drive, band_Hz)
+        power = power / (band_Hz[1] - band_Hz[0])
+        motion[number], omega[number] = np.sqrt(power.mean()), own[0]
     return HeldTube(stiffness, motion, omega)
 
 
@@ -127,3 +133,44 @@ class DisplacementLaw:
         held = float(np.exp(np.interp(x, places, np.log(self.held))))
         k = tube.stiffness_at(held, load_rms_N, gap_m)
         return k, float(np.interp(x, places, self.loss)) * k / tube.first_omega(k)
+
+
+@dataclass(frozen=True)
+class ShippedLaw:
+    """A law with its measured errors.
+
+    origin: of the law.
+    errors: rows of law_errors.error_rows, ascending, the last one over all levels.
+    """
+
+    law: DisplacementLaw
+    errors: tuple[dict[str, Any], ...]
+    origin: dict[str, Any]
+
+    def error_at(self, level: float) -> dict[str, float]:
+        """Return the measured ratios of simulation to law at a level: k_median, k_low, k_high and
+        those of c.
+
+        They are interpolated in logarithms between the middles of the regions. The range from low
+        to high includes 1, the tube of the fit.
+        """
+        regions = self.errors[:-1]
+        middles = [0.5 * np.log(row["level_from"] * row["level_to"]) for row in regions]
+        error = {
+            name: float(
+                np.exp(np.interp(np.log(level), middles, [np.log(row[name]) for row in regions]))
+            )
+            for name in RATIOS
+        }
+        for name in ("k", "c"):
+            error[f"{name}_low"] = min(error[f"{name}_low"], 1.0)
+            error[f"{name}_high"] = max(error[f"{name}_high"], 1.0)
+        return error
+
+
+@cache
+def shipped_law(path: Path = LAW_FILE) -> ShippedLaw:
+    """Return the law of a file that the workflow makes; that of the package by default."""
+    content = json.loads(read_text(path))
+    arrays = {name: np.array(content[name]) for name in ("level", "held", "loss")}
+    return ShippedLaw(DisplacementLaw(**arrays), tuple(content["errors"]), content["origin"])

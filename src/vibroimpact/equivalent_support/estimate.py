@@ -13,9 +13,8 @@ from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.reduction.reduced_model import build_model
 
 from .answer import Answer, EquivalentError, GroupAnswer, Span
-from .displacement_law import held_tube
+from .displacement_law import ShippedLaw, held_tube, shipped_law
 from .homogeneity import effects_with_a_scale
-from .law_file import ShippedLaw, shipped_law
 from .missing_case import require_metres
 
 
@@ -40,7 +39,12 @@ def estimate_equivalent(config: Config | str | Path, load_rms_N: float, gap_m: f
             f"excitation.kind is {config.excitation.kind}: the law knows band_limited forces alone."
             " Run the study"
         )
-    _require_plain(model)
+    if not len(model.support_of_point):
+        raise EquivalentError("the configuration has no supports: there is nothing to estimate")
+    if effects := effects_with_a_scale(model):
+        raise EquivalentError(
+            f"the model has {'; '.join(effects)}, which the law does not know: run the study"
+        )
     tube = held_tube(model, config.excitation.band_Hz)
     if not np.all(np.isfinite(tube.motion)):
         raise EquivalentError(
@@ -65,17 +69,6 @@ def estimate_equivalent(config: Config | str | Path, load_rms_N: float, gap_m: f
     return Answer(
         config.study, "estimate", load_rms_N, gap_m, (group,), True, _notes(model, shipped, error)
     )
-
-
-def _require_plain(model: ModalModel) -> None:
-    """Raise EquivalentError for a model that the law can not speak of."""
-    if not len(model.support_of_point):
-        raise EquivalentError("the configuration has no supports: there is nothing to estimate")
-    effects = effects_with_a_scale(model)
-    if effects:
-        raise EquivalentError(
-            f"the model has {'; '.join(effects)}, which the law does not know: run the study"
-        )
 
 
 def _require_inside(shipped: ShippedLaw, level: float, load_rms_N: float) -> None:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import chain
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -37,7 +38,6 @@ class Reading:
 def read_at(
     rows: Sequence[dict[str, Any]],
     level: float,
-    level_of: Callable[[dict[str, Any]], float],
     columns: tuple[str, str, str],
     logarithmic: bool,
 ) -> Reading:
@@ -47,21 +47,21 @@ def read_at(
     the median over the gaps that count, and the interval the hull of theirs. It needs at least half
     of the gaps that reach the level; fewer would be a chance selection.
 
-    rows: with the columns gap_m and those of `columns`: value, low and high; one per load and gap.
-    level_of: level of a row, such as its load over its gap.
+    rows: with the columns gap_m, level (such as the load over the gap) and those of `columns`:
+        value, low and high; one per load and gap.
     logarithmic: interpolate the logarithm of the values, which then are positive.
     """
     found, brackets, gaps, used = [], [], [], []
     blocked: dict[float, list[dict[str, Any]]] = {}
     for gap in sorted({row["gap_m"] for row in rows}, reverse=True):
-        ends = _neighbours([row for row in rows if row["gap_m"] == gap], level, level_of)
+        ends = _neighbours([row for row in rows if row["gap_m"] == gap], level)
         if not ends:
             continue
         values = np.array([[row[column] for column in columns] for row in ends], dtype=float)
         if not np.all((values > (0.0 if logarithmic else -np.inf)) & np.isfinite(values)):
             blocked[float(gap)] = ends
             continue
-        levels = [level_of(row) for row in ends]
+        levels = [row["level"] for row in ends]
         found.append(_between(level, levels, values, logarithmic))
         brackets.append((levels[0], levels[-1]))
         gaps.append(float(gap))
@@ -81,14 +81,12 @@ def read_at(
     )
 
 
-def _neighbours(
-    rows: Sequence[dict[str, Any]], level: float, level_of: Callable[[dict[str, Any]], float]
-) -> list[dict[str, Any]]:
+def _neighbours(rows: Sequence[dict[str, Any]], level: float) -> list[dict[str, Any]]:
     """Return the row at a level, or the two that enclose it; none if it is outside."""
-    ordered = sorted(rows, key=level_of)
-    same = [row for row in ordered if abs(level_of(row) / level - 1.0) <= SAME]
-    below = [row for row in ordered if level_of(row) < level]
-    above = [row for row in ordered if level_of(row) > level]
+    ordered = sorted(rows, key=itemgetter("level"))
+    same = [row for row in ordered if abs(row["level"] / level - 1.0) <= SAME]
+    below = [row for row in ordered if row["level"] < level]
+    above = [row for row in ordered if row["level"] > level]
     if same:
         return same[:1]
     return [below[-1], above[0]] if below and above else []
@@ -106,17 +104,15 @@ def _between(
     return (1.0 - share) * values[0] + share * values[1]
 
 
-def ranges_of_agreement(
-    rows: Sequence[dict[str, Any]], level_of: Callable[[dict[str, Any]], float], column: str
-) -> list[tuple[float, float]]:
+def ranges_of_agreement(rows: Sequence[dict[str, Any]], column: str) -> list[tuple[float, float]]:
     """Return the ranges of level over which every row says "agree", lowest first."""
     ranges: list[list[float]] = []
     open_ = False
-    for row in sorted(rows, key=level_of):
+    for row in sorted(rows, key=itemgetter("level")):
         agrees = row[column] == "agree"
         if agrees and open_:
-            ranges[-1][1] = level_of(row)
+            ranges[-1][1] = row["level"]
         elif agrees:
-            ranges.append([level_of(row), level_of(row)])
+            ranges.append([row["level"], row["level"]])
         open_ = agrees
     return [(low, high) for low, high in ranges]

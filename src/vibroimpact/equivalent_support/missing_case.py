@@ -87,18 +87,14 @@ def outside_sentence(
         nearest = min(rows, key=lambda row: abs(np.log(row["load_rms_N"] / row["gap_m"] / level)))
         # Any case with this load over gap will do: one load more, at a gap that is there.
         wanted = level * nearest["gap_m"]
+    step = 10.0 ** (np.floor(np.log10(wanted)) - 2.0)  # three digits, away from the nearest
+    away = np.ceil if wanted > nearest["load_rms_N"] else np.floor
     return (
         f"{place}: nothing is extrapolated. The nearest case is {nearest['load_rms_N']:g} N RMS at"
-        f" {nearest['gap_m']:g} m. Add the load {_rounded_away(wanted, nearest['load_rms_N']):g} to"
+        f" {nearest['gap_m']:g} m. Add the load {away(wanted / step) * step:g} to"
         f" grid.load_rms_N in {config} (written as a list: the loads there are, and this one) and"
         f" {run}"
     )
-
-
-def _rounded_away(value: float, other: float) -> float:
-    """Return a value with three digits, rounded away from another one."""
-    step = 10.0 ** (np.floor(np.log10(value)) - 2.0)
-    return float((np.ceil if value > other else np.floor)(value / step) * step)
 
 
 def configuration_of(study: str) -> str | None:

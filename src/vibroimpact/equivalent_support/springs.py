@@ -66,7 +66,12 @@ def point_springs(
     Raises EquivalentError if no k is resolved or bounded, or the structure has no positions in
     space.
     """
-    _require_positions(model)
+    if not np.any(model.contact_position):
+        raise EquivalentError(
+            "the supports of this structure have no positions in space (a chain, matrices or"
+            " measured modes): give the places of their points in `points`, or put k and c there by"
+            " hand"
+        )
     springs: list[PointSpring] = []
     for number, name in enumerate(model.support_names):
         groups = [group for group in answer.groups if name in group.supports]
@@ -78,25 +83,14 @@ def point_springs(
     left_out = [*answer.unresolved, *bare_words]
     if not kept and not bounded:
         raise EquivalentError(f"nothing to export: {'; '.join(left_out)}")
-    warnings = [*answer.warnings, *(_without_spring(group) for group in answer.groups)]
-    return SpringSet(kept, tuple(filter(None, warnings)), _notes(answer, across), tuple(left_out))
-
-
-def _without_spring(group: GroupAnswer) -> str:
-    """Return that the supports of a group have no spring because k has only an upper bound."""
-    if not group.bounded:
-        return ""
-    supports = ", ".join(group.supports)
-    return f"no spring along {group.direction} at {supports}: per support {group.reason_k}"
-
-
-def _require_positions(model: ModalModel) -> None:
-    if not np.any(model.contact_position):
-        raise EquivalentError(
-            "the supports of this structure have no positions in space (a chain, matrices or"
-            " measured modes): give the places of their points in `points`, or put k and c there by"
-            " hand"
-        )
+    bounds = [
+        f"no spring along {group.direction} at {', '.join(group.supports)}: per support"
+        f" {group.reason_k}"
+        for group in answer.groups
+        if group.bounded
+    ]
+    warnings = filter(None, [*answer.warnings, *bounds])
+    return SpringSet(kept, tuple(warnings), _notes(answer, across), tuple(left_out))
 
 
 def _springs_of_support(
@@ -146,12 +140,9 @@ def _along(
 
 def _pair_of(group: GroupAnswer | None) -> Pair:
     """Return (k, c) of a group; without a k there is no c either."""
-    k = None if group is None else _value(group.k)
-    return k, None if group is None or k is None else _value(group.c)
-
-
-def _value(span: Span) -> float | None:
-    return span.value if span.resolved else None
+    if group is None or not group.k.resolved:
+        return None, None
+    return group.k.value, group.c.value if group.c.resolved else None
 
 
 def _notes(answer: Answer, across: str) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,7 @@ from vibroimpact.reduction.model_file import read_model
 from vibroimpact.study.method_agreement import VERDICTS
 from vibroimpact.study.reasons import bound_text
 
-from .answer import NOT_MOVED, Answer, EquivalentError, GroupAnswer, MethodAnswer, Span
+from .answer import NOT_MOVED, Answer, EquivalentError, GroupAnswer, MethodAnswer
 from .homogeneity import effects_with_a_scale
 from .interpolation import SAME, Reading, ranges_of_agreement, read_at
 from .missing_case import no_study_sentence, outside_sentence, require_metres
@@ -46,22 +46,23 @@ def equivalent(
     Raises EquivalentError if there is no answer; the message states the remedy.
     """
     folder = study_folder(study)
-    _require_positive(load_rms_N, gap_m)
+    for name, value, unit in (("load", load_rms_N, "N"), ("gap", gap_m, "m")):
+        if not (np.isfinite(value) and value > 0.0):
+            raise EquivalentError(f"the {name} is {value:g} {unit}: give a positive number")
     model = model_of(folder) if model is None else model
     direction = driven_word(model)
     summary = summary_rows_of(folder, direction)
     recommended = recommended_rows_of(folder, summary, direction)
     require_metres(gap_m, [row["gap_m"] for row in recommended])
     effects = effects_with_a_scale(model)
-    level_of: Callable[[dict[str, Any]], float]
     if effects:
         gap = _gap_of_the_grid(folder.name, recommended, gap_m, effects)
         recommended = [row for row in recommended if row["gap_m"] == gap]
         summary = [row for row in summary if row["gap_m"] == gap]
-        level_of, level = _load, load_rms_N
-    else:
-        level_of, level = _load_over_gap, load_rms_N / gap_m
-    levels = [level_of(row) for row in recommended]
+    for row in (*recommended, *summary):
+        row["level"] = float(row["load_rms_N"]) / (1.0 if effects else float(row["gap_m"]))
+    level = load_rms_N / (1.0 if effects else gap_m)
+    levels = [row["level"] for row in recommended]
     if np.isnan(levels).all():
         raise EquivalentError(
             f"'{folder.name}' was measured without a force, its records have no load: read k and c"
@@ -72,16 +73,18 @@ def equivalent(
             outside_sentence(folder.name, recommended, load_rms_N, gap_m, bool(effects))
         )
     keys = dict.fromkeys((row["group"], row["direction"]) for row in recommended)
-    asked = _Asked(load_rms_N, gap_m, level, level_of, not effects)
+    asked = _Asked(load_rms_N, gap_m, level, not effects)
     answers = tuple(
         _group_answer(
             asked,
-            group,
-            direction,
-            members(group, direction, model),
-            [_of_group(rows, group, direction) for rows in (recommended, summary)],
+            *key,
+            members(*key, model),
+            [
+                [row for row in rows if (row["group"], row["direction"]) == key]
+                for rows in (recommended, summary)
+            ],
         )
-        for group, direction in keys
+        for key in keys
     )
     return Answer(folder.name, "study", load_rms_N, gap_m, answers, not effects, _notes(effects))
 
@@ -93,7 +96,6 @@ class _Asked:
     load_rms_N: float
     gap_m: float
     level: float
-    level_of: Callable[[dict[str, Any]], float]
     homogeneous: bool
 
     def rows_of(self, rows: Rows) -> Rows:
@@ -108,7 +110,7 @@ class _Asked:
 
     def read(self, rows: Rows, name: str, columns: tuple[str, str, str]) -> Reading:
         """Return the Reading of k or c."""
-        return read_at(self.rows_of(rows), self.level, self.level_of, columns, name == "k")
+        return read_at(self.rows_of(rows), self.level, columns, name == "k")
 
 
 def study_folder(study: str | Path) -> Path:
@@ -164,24 +166,6 @@ def members(group: str, direction: str, model: ModalModel) -> tuple[str, ...]:
     return found
 
 
-def _require_positive(load_rms_N: float, gap_m: float) -> None:
-    for name, value, unit in (("load", load_rms_N, "N"), ("gap", gap_m, "m")):
-        if not (np.isfinite(value) and value > 0.0):
-            raise EquivalentError(f"the {name} is {value:g} {unit}: give a positive number")
-
-
-def _load(row: dict[str, Any]) -> float:
-    return float(row["load_rms_N"])
-
-
-def _load_over_gap(row: dict[str, Any]) -> float:
-    return float(row["load_rms_N"]) / float(row["gap_m"])
-
-
-def _of_group(rows: list[dict[str, Any]], group: str, direction: str) -> list[dict[str, Any]]:
-    return [row for row in rows if (row["group"], row["direction"]) == (group, direction)]
-
-
 def _gap_of_the_grid(study: str, rows: Rows, gap_m: float, effects: list[str]) -> float:
     """Return the gap of the study that was asked for. Raises EquivalentError for another one."""
     gaps = sorted({float(row["gap_m"]) for row in rows})
@@ -226,20 +210,19 @@ def _group_answer(
         secant_k=secant["k"],
         secant_c=secant["c"],
         methods=tuple(
-            MethodAnswer(method, *(_of_method(asked, summary, method, name) for name in "kc"))
+            MethodAnswer(
+                method,
+                *(
+                    asked.read(own, name, (f"{name}_median", f"{name}_low", f"{name}_high")).span
+                    for name in "kc"
+                ),
+            )
             for method in METHODS
-            if any(row["method"] == method for row in summary)
+            if (own := [row for row in summary if row["method"] == method])
         ),
         how=_how(asked, k if k.gaps else c, recommended),
         agreeing=_agreeing_range(asked, recommended),
     )
-
-
-def _of_method(asked: _Asked, summary: Rows, method: str, name: str) -> Span:
-    """Return k or c of one method."""
-    rows = [row for row in summary if row["method"] == method]
-    columns = (f"{name}_median", f"{name}_low", f"{name}_high")
-    return asked.read(rows, name, columns).span
 
 
 def _agreement(reading: Reading, name: str) -> str:
@@ -320,7 +303,7 @@ def _listed(words: Sequence[str]) -> str:
 
 def _agreeing_range(asked: _Asked, rows: Rows) -> tuple[float, float] | None:
     """Return the range of level nearest to the one asked for in which the methods agree on k."""
-    ranges = ranges_of_agreement(rows, asked.level_of, "agreement_k")
+    ranges = ranges_of_agreement(rows, "agreement_k")
     x = np.log(asked.level)
 
     def distance(ends: tuple[float, float]) -> float:

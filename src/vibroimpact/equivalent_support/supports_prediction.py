@@ -187,17 +187,13 @@ def supports_prediction_rows(
             linear = supports_response(model, grouped, supports, load, excitation.band_Hz)
             labels = {"gap_m": gap_m, "load_rms_N": load, "supports": name}
             compared = _compared(linear, seeds, sensors, excitation.band_Hz, model.support_names)
-            rows += [{**labels, **row} for row in _with_gain(compared, len(sensors))]
+            # one gain of the input, from the first rows, the sensors in the whole band
+            gain = -float(np.mean([row["error_dB"] for row in compared[: len(sensors)]]))
+            rows += [
+                {**labels, **row, "gain_dB": gain, "error_with_gain_dB": row["error_dB"] + gain}
+                for row in compared
+            ]
     return rows
-
-
-def _with_gain(rows: list[dict], sensors: int) -> list[dict]:
-    """Return the rows of one case with one gain of the input.
-
-    sensors: number of the first rows, the sensors in the whole band.
-    """
-    gain = -float(np.mean([row["error_dB"] for row in rows[:sensors]]))
-    return [{**row, "gain_dB": gain, "error_with_gain_dB": row["error_dB"] + gain} for row in rows]
 
 
 def _recorded(

@@ -11,9 +11,7 @@ assumed, which contact would change.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, fields
-from typing import Any
 
 import numpy as np
 
@@ -88,26 +86,17 @@ class FluidForce:
         )
 
 
-def fluid_force(coupling: ConfigPart, diameter: float) -> FluidForce:
-    """Return the FluidForce of a section `flow.coupling`; diameter in m."""
-    return KINDS[coupling.kind](coupling, diameter)
-
-
-def _lags(own: ConfigPart, diameter: float) -> FluidForce:
-    """Return the force as it is given."""
+def fluid_force(own: ConfigPart, diameter: float) -> FluidForce:
+    """Return the FluidForce of a section `flow.coupling`; diameter of the tube in m."""
+    if own.kind == "quasi_steady":  # the lift follows with a first-order lag mu D/V
+        slope = own.lift_slope
+        return FluidForce(-slope, own.drag, (slope,), (1.0 / own.delay,), diameter)
+    if own.kind == "negative_damping":  # C_d = -4 V_r/K² of Connors' law, frozen at a frequency
+        frozen = -4.0 / (own.frequency_Hz * own.constant**2)
+        return FluidForce(0.0, 0.0, (), (), diameter, frozen)
+    if own.kind == "connors":
+        return _connors(own, diameter)
     return FluidForce(own.stiffness, own.damping, own.amplitudes, own.rates, diameter)
-
-
-def _quasi_steady(own: ConfigPart, diameter: float) -> FluidForce:
-    """Return the force whose lift follows the displacement with a first-order lag mu D/V."""
-    slope = own.lift_slope
-    return FluidForce(-slope, own.drag, (slope,), (1.0 / own.delay,), diameter)
-
-
-def _negative_damping(own: ConfigPart, diameter: float) -> FluidForce:
-    """Return the damping C_d = -4 V_r/K² of Connors' law, frozen at a frequency."""
-    frozen = -4.0 / (own.frequency_Hz * own.constant**2)
-    return FluidForce(0.0, 0.0, (), (), diameter, frozen)
 
 
 def _connors(own: ConfigPart, diameter: float) -> FluidForce:
@@ -146,11 +135,3 @@ def outside_fit(coupling: ConfigPart, velocity: float, mode_Hz: float, diameter:
         f" {mode_Hz:.4g} Hz has a reduced velocity of {reduced:.3g}, and the force is extrapolated:"
         " fit it there"
     )
-
-
-KINDS: dict[str, Callable[[Any, float], FluidForce]] = {
-    "lags": _lags,
-    "quasi_steady": _quasi_steady,
-    "connors": _connors,
-    "negative_damping": _negative_damping,
-}

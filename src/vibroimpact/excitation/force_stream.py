@@ -1,4 +1,4 @@
-"""The force of a seed, in blocks: any stretch of it at the integration step.
+"""The force of a seed in every force channel, in blocks: any stretch of it at the integration step.
 
 The whole record is never in memory. A band-limited record is drawn as Fourier lines. Its values at
 every n-th step are the inverse transform of the same lines over a length n times shorter. The steps
@@ -11,14 +11,17 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import fsum, pi
-from typing import Any
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from vibroimpact.config.stage_settings import ConfigPart
+from vibroimpact.geometry.sections import outer_width
 
 from .force_files import read_force, require_lasting
+from .line_force_spectrum import line_force_psd
 from .random_force import ForceError, noise_lines, resample_measured
+from .random_streams import random_generator
 
 OVERSAMPLING = 5  # lowest rate of the short record, in units of the band's upper edge
 # Taps of the interpolation. With OVERSAMPLING 5 a Kaiser window of this length leaves 1e-14 of the
@@ -39,6 +42,38 @@ class SpectralForce:
 
     band_Hz: Sequence[float]
     psd: Callable[[np.ndarray], np.ndarray]
+
+
+Made = TypeVar("Made")
+
+
+def force_channels(
+    config: ConfigPart,
+    seed: int,
+    channels: int,
+    made: Callable[[ConfigPart | SpectralForce, np.random.Generator], Made],
+) -> list[Made]:
+    """Return the force of a seed in each channel, per newton of the load.
+
+    Turbulence has independent forces of one spectrum in all channels; a channel does not depend on
+    how many there are. Any other excitation has one channel.
+
+    config: parts seed, excitation and structure.section.
+    channels: number of force channels of the model.
+    made: function (excitation, random stream) that makes the force of a channel, as a ForceStream
+        or an array.
+    """
+    force = config.excitation
+    if force.kind != "turbulence":
+        return [made(force, random_generator(config.seed, seed, "force"))]
+    diameter = outer_width(config.structure.section)
+    spectral = SpectralForce(
+        force.band_Hz, lambda frequency: line_force_psd(force, diameter, frequency)
+    )
+    return [
+        made(spectral, random_generator(config.seed, seed, "force", channel))
+        for channel in range(channels)
+    ]
 
 
 class ForceStream:
@@ -99,19 +134,6 @@ class ForceStream:
         return self._blocks[index]
 
 
-def normalised_force(
-    excitation: ConfigPart | SpectralForce,
-    generator: np.random.Generator | None,
-    samples: int,
-    rate: float,
-    recorded: slice,
-    first_time_s: float = 0.0,
-) -> np.ndarray:
-    """Return all samples (sample,) of the ForceStream with these arguments."""
-    stream = ForceStream(excitation, generator, samples, rate, recorded, first_time_s)
-    return stream.values(0, samples)
-
-
 def _source(
     excitation: ConfigPart | SpectralForce,
     generator: Any,
@@ -126,18 +148,23 @@ def _source(
         return _Interpolated(*lines, exact_rms=False)
     source = excitation.signal if excitation.kind == "base_motion" else excitation
     if source.kind == "none":
-        return _Formula(np.zeros_like, rate, 0.0)
+        return _Blocks(lambda index: np.zeros(BLOCK_STEPS))
     if source.kind == "harmonic":
         omega, phase = 2.0 * pi * source.frequency_Hz, np.deg2rad(source.phase_deg)
-        return _Formula(
-            lambda time: np.sqrt(2.0) * np.sin(omega * time + phase), rate, first_time_s
-        )
+        steps = np.arange(BLOCK_STEPS)
+
+        def sine(index: int) -> np.ndarray:
+            time = first_time_s + (index * BLOCK_STEPS + steps) / rate
+            return np.sqrt(2.0) * np.sin(omega * time + phase)
+
+        return _Blocks(sine)
     if source.kind == "white_noise":
         return _WhiteNoise(generator)
     if source.kind == "band_limited":
         return _Interpolated(*noise_lines(generator, samples, rate, source.band_Hz))
     file = (excitation.file, excitation.variable, excitation.sampling_frequency_Hz)
-    return _Stored(_measured(file, rate, (recorded.start or 0) / rate, samples / rate))
+    values = _measured(file, rate, (recorded.start or 0) / rate, samples / rate)
+    return _Blocks(lambda index: values[index * BLOCK_STEPS : (index + 1) * BLOCK_STEPS], True)
 
 
 @lru_cache(maxsize=1)
@@ -153,18 +180,15 @@ def _measured(
     return resample_measured(force.values, force.rate, rate)
 
 
-class _Formula:
-    """A function of time (s)."""
+class _Blocks(NamedTuple):
+    """A source of blocks: block(index) of block_steps samples.
 
-    exact_rms, block_steps = False, BLOCK_STEPS
+    exact_rms: whether the force is scaled to its RMS over the record.
+    """
 
-    def __init__(self, function, rate, first_time_s):
-        self._function, self._rate, self._first = function, rate, first_time_s
-
-    def block(self, index):
-        return self._function(
-            self._first + np.arange(index * BLOCK_STEPS, (index + 1) * BLOCK_STEPS) / self._rate
-        )
+    block: Callable[[int], np.ndarray]
+    exact_rms: bool = False
+    block_steps: int = BLOCK_STEPS
 
 
 class _WhiteNoise:
@@ -182,18 +206,6 @@ class _WhiteNoise:
             if number + 1 == len(self._states):
                 self._states.append(self._generator.bit_generator.state)
         return values
-
-
-class _Stored:
-    """A record that is in memory as a whole: a measured force."""
-
-    exact_rms, block_steps = True, BLOCK_STEPS
-
-    def __init__(self, values):
-        self._values = values
-
-    def block(self, index):
-        return self._values[index * BLOCK_STEPS : (index + 1) * BLOCK_STEPS]
 
 
 class _Interpolated:

@@ -1,10 +1,6 @@
-"""The places of the forces of a configuration: force vectors over the degrees of freedom.
-
-A base that moves while the obstacles stay in space becomes one more mode.
-"""
+"""The places of the forces of a configuration: force vectors over the degrees of freedom."""
 
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import numpy as np
 
@@ -22,9 +18,6 @@ GAUSS = (
     (0.3399810435848563, 0.6521451548625461),
     (0.8611363115940526, 0.3478548451374538),
 )
-# Amplitude of the base mode per metre of base motion. A contact force moves the base by the square
-# of this times the motion of a mass of 1 kg.
-BASE_SCALE = 1.0e-7
 
 
 def force_vector(
@@ -104,10 +97,7 @@ def line_load(structure: TubeStructure | PointStructure, load: ConfigPart) -> np
             "excitation.distributed needs a tube (structure.kind u_tube or path): use"
             " excitation.also"
         )
-    first, last = sorted(
-        structure.centreline.locate(place, "excitation.distributed")
-        for place in (load.from_m, load.to_m)
-    )
+    first, last = structure.centreline.stretch(load.from_m, load.to_m, "excitation.distributed")
     inner = structure.node_arc_length
     stretches = np.concatenate(
         [[first], inner[(inner > first + 1e-9) & (inner < last - 1e-9)], [last]]
@@ -132,44 +122,3 @@ def constant_force_vector(
         for load in excitation.constant
     ]
     return np.sum(rows, axis=0) if rows else np.zeros(structure.dofs)
-
-
-def with_base_mode(
-    fields: dict[str, Any], excitation: ConfigPart, initial: ConfigPart | None
-) -> dict[str, Any]:
-    """Return the fields of a ModalModel with one more mode in front: the motion of the base.
-
-    The obstacles stay in space. The mode has no stiffness, and only the case's acceleration drives
-    it. Its share BASE_SCALE in the contact shapes turns relative displacements into absolute ones
-    (the large mass method).
-
-    fields: {name: array} of a ModalModel, with the mode axis first.
-    excitation, initial: sections of the configuration.
-    """
-    direction = unit_vector(excitation.direction)
-    moved = fields["contact_directions"] @ direction  # (contact_point, 2)
-    grown = dict(fields)
-    for name in MODE_FIELDS:
-        grown[name] = np.concatenate([np.zeros((1, *fields[name].shape[1:])), fields[name]])
-    grown["contact_shapes"][0] = BASE_SCALE * moved
-    grown["drive_shapes"][0, 0] = 1.0 / BASE_SCALE
-    if initial is not None:
-        grown["initial_displacement"][0] = initial.base_displacement_m / BASE_SCALE
-        grown["initial_velocity"][0] = initial.base_velocity_m_per_s / BASE_SCALE
-    return grown
-
-
-MODE_FIELDS = (
-    "omega",
-    "damping",
-    "contact_shapes",
-    "drive_shapes",
-    "sensor_shapes",
-    "line_shapes",
-    "stress_shapes",
-    "element_shapes",
-    "initial_displacement",
-    "initial_velocity",
-    "constant_force",
-    "fluid_shapes",
-)

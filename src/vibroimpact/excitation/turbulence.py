@@ -52,10 +52,12 @@ def drive_shapes(
         rows = [shapes_at(structure, place, shapes) for place in places]
         pieces.append((begin, end, factor, places, rows))
     for across in directions(structure.centreline, force):
-        values = [
-            (begin, end, factor * _sum_and_modes(across, places, rows))
-            for begin, end, factor, places, rows in pieces
-        ]
+        values = []
+        for begin, end, factor, places, rows in pieces:
+            along = [across(place) @ row for place, row in zip(places, rows, strict=True)]
+            # (point, 1 + mode): the sum along the tube, then the force on each mode
+            columns = np.column_stack([np.ones(len(places)), np.array(along)])
+            values.append((begin, end, factor * columns))
         covariance = field_covariance(values, force.correlation_length_m)
         covariance /= covariance[0, 0]
         allowed = force.tolerance * _reference(np.diag(covariance)[1:], omega, force.band_Hz[1])
@@ -85,13 +87,10 @@ def stretches(line: Centreline, force: ConfigPart) -> list[tuple[float, float, f
     """
     if not force.stretches:
         return [(0.0, line.length, 1.0)]
-    found = []
-    for stretch in force.stretches:
-        ends = sorted(
-            line.locate(place, "excitation.stretches") for place in (stretch.from_m, stretch.to_m)
-        )
-        found.append((ends[0], ends[1], stretch.factor))
-    return sorted(found)
+    return sorted(
+        (*line.stretch(own.from_m, own.to_m, "excitation.stretches"), own.factor)
+        for own in force.stretches
+    )
 
 
 def directions(line: Centreline, force: ConfigPart) -> list[Callable[[float], np.ndarray]]:
@@ -125,14 +124,6 @@ def shapes_at(structure: TubeStructure, place: float, shapes: np.ndarray) -> np.
     if not known:
         del structure.rows[place]
     return rows @ shapes
-
-
-def _sum_and_modes(
-    across: Callable[[float], np.ndarray], places: np.ndarray, rows: list[np.ndarray]
-) -> np.ndarray:
-    """Return (point, 1 + mode): 1, then the shapes along the force, at each of the places."""
-    along = [across(place) @ row for place, row in zip(places, rows, strict=True)]
-    return np.column_stack([np.ones(len(places)), np.array(along)])
 
 
 def _reference(variance: np.ndarray, omega: np.ndarray, highest_Hz: float) -> np.ndarray:

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, cast
 
 import numpy as np
 
@@ -74,9 +73,12 @@ def tube_in_flow(config: Config, flow: Flow) -> TubeInFlow:
         name: np.einsum("mpa,pa->mp", motion, np.array([way(place) for place in places]))
         for name, way in zip((ALONG, ACROSS), ways, strict=False)
     }
-    mass, section = _mass(config, line, places), cast(Any, config.structure).section
-    flowing = Along(weight, line.length, factor, density, mass)
-    return TubeInFlow(model, outer_width(section), flowing, along)
+    structure: ConfigPart = config.structure
+    beam = section_beam(structure.section, structure.material, structure.theory)
+    beams = beams_in_fluid(beam, fluid_stretches(structure, line), places)
+    mass = [np.mean([plane.mass_per_length for plane in own.planes]) for own in beams]
+    flowing = Along(weight, line.length, factor, density, np.array(mass))
+    return TubeInFlow(model, outer_width(structure.section), flowing, along)
 
 
 def _gauss(cuts: Sequence[float], line: Centreline) -> tuple[np.ndarray, np.ndarray]:
@@ -100,11 +102,3 @@ def _motion(config: Config, line: Centreline, places: np.ndarray) -> tuple[Modal
     }
     model = build_model(config.model_copy(update=changed), motion_only=True)
     return model, model.sensor_shapes.reshape(model.modes, len(places), 3)
-
-
-def _mass(config: Config, line: Centreline, places: np.ndarray) -> np.ndarray:
-    """Return (place,) kg/m that moves across the tube: mass of the tube and of the fluids."""
-    structure: ConfigPart = config.structure
-    beam = section_beam(structure.section, structure.material, structure.theory)
-    beams = beams_in_fluid(beam, fluid_stretches(structure, line), places)
-    return np.array([np.mean([plane.mass_per_length for plane in own.planes]) for own in beams])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from itertools import combinations
 from typing import Any
@@ -24,6 +24,10 @@ MODES = 8  # reported: the lowest of each direction
 STATES = 20  # lowest modes that a fluid-elastic force couples
 LEAST_SHARE = 0.05  # of a mode's energy in a direction: below, the force does not drive it
 VELOCITIES = 41  # of the eigenvalues, from 0 to the highest
+# Ends of the names of columns that have a unit.
+UNITS = {"frequency": "_Hz"} | dict.fromkeys(
+    ("velocity", "effective", "critical_low", "critical_high"), "_m_per_s"
+)
 SEARCHED = 3.0  # times the highest velocity: up to which eigenvalues are followed
 
 
@@ -54,19 +58,7 @@ class StabilityRow:
 
     def table_row(self) -> dict[str, Any]:
         """Return the row of stability.csv, its columns named with their units."""
-        return {
-            "velocity_m_per_s": self.velocity,
-            "inactive": self.inactive,
-            "mode": self.mode,
-            "direction": self.direction,
-            "frequency_Hz": self.frequency,
-            "damping_ratio": self.damping_ratio,
-            "effective_m_per_s": self.effective,
-            "critical_low_m_per_s": self.critical_low,
-            "critical_high_m_per_s": self.critical_high,
-            "ratio_low": self.ratio_low,
-            "ratio_high": self.ratio_high,
-        }
+        return {f"{name}{UNITS.get(name, '')}": value for name, value in asdict(self).items()}
 
 
 @dataclass(frozen=True, eq=False)

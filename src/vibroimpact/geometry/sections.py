@@ -84,31 +84,27 @@ def _tube(section: Any, poisson_ratio: float) -> SectionProperties:
             f"wall thickness {section.wall_thickness_m} m must lie between 0 and the outer radius"
             f" {outer} m"
         )
+    return _ring(outer, inner, section.shear_coefficient)
+
+
+def _round(section: Any, poisson_ratio: float) -> SectionProperties:
+    """Return the properties of a solid circle. Shear coefficient: Cowper (1966), table 1."""
+    shear = section.shear_coefficient
+    if shear is None:
+        shear = 6.0 * (1.0 + poisson_ratio) / (7.0 + 6.0 * poisson_ratio)
+    return _ring(0.5 * section.diameter_m, 0.0, shear)
+
+
+def _ring(outer: float, inner: float, shear: float) -> SectionProperties:
+    """Return the properties of an annulus between two radii in m."""
     second_moment = 0.25 * np.pi * (outer**4 - inner**4)
     return SectionProperties(
         area=np.pi * (outer**2 - inner**2),
         second_moments=(second_moment, second_moment),
         torsion_constant=2.0 * second_moment,
-        shear_coefficients=(section.shear_coefficient, section.shear_coefficient),
+        shear_coefficients=(shear, shear),
         outer_fibres=(outer, outer),
         enclosed_area=np.pi * outer**2,
-    )
-
-
-def _round(section: Any, poisson_ratio: float) -> SectionProperties:
-    """Return the properties of a solid circle. Shear coefficient: Cowper (1966), table 1."""
-    radius = 0.5 * section.diameter_m
-    area, second_moment = np.pi * radius**2, 0.25 * np.pi * radius**4
-    shear = section.shear_coefficient
-    if shear is None:
-        shear = 6.0 * (1.0 + poisson_ratio) / (7.0 + 6.0 * poisson_ratio)
-    return SectionProperties(
-        area=area,
-        second_moments=(second_moment, second_moment),
-        torsion_constant=2.0 * second_moment,
-        shear_coefficients=(shear, shear),
-        outer_fibres=(radius, radius),
-        enclosed_area=area,
     )
 
 

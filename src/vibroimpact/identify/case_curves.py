@@ -10,7 +10,7 @@ from .identify_supports import SupportsCase
 from .observed_case import ObservedCase
 from .ods import DeflectionShape
 from .operational_pole import OperationalPole
-from .peak import LEVELS, PeakFit
+from .peak import LEVELS
 
 # name: (dimensions, units, long name)
 CURVES = {
@@ -56,7 +56,12 @@ def case_curves(case: ObservedCase, more: dict[str, Any], declared: Mapping = CU
     """
     layout = case.layout
     frequency, hertz = layout.frequency, {"units": "Hz", "long_name": "frequency"}
-    data = _peaks(case.peaks, frequency) | _chart(case.pole) | _deflection(case.shape) | more
+    fitted = np.full((len(case.peaks), frequency.size), np.nan)
+    for row, fit in zip(fitted, case.peaks.values(), strict=True):
+        if fit is not None:
+            row[fit.bins] = fit.curve
+    data = {"peak_curve": fitted, "peak_level": list(LEVELS.values())}
+    data |= _chart(case.pole) | _deflection(case.shape) | more
     variables = {}
     for name, values in data.items():
         dims, units, long_name = declared[name]
@@ -92,14 +97,6 @@ def supports_curves(case: SupportsCase) -> xr.Dataset:
     return case_curves(case, more, SUPPORTS_CURVES).assign_coords(
         support_direction=("support_direction", names, about)
     )
-
-
-def _peaks(peaks: dict[str, PeakFit | None], frequency: np.ndarray) -> dict[str, Any]:
-    fitted = np.full((len(peaks), frequency.size), np.nan)
-    for row, fit in zip(fitted, peaks.values(), strict=True):
-        if fit is not None:
-            row[fit.bins] = fit.curve
-    return {"peak_curve": fitted, "peak_level": list(LEVELS.values())}
 
 
 def _chart(pole: OperationalPole | None) -> dict[str, Any]:

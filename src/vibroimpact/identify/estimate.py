@@ -34,6 +34,8 @@ BOUND_SIGMAS = 2.0  # of chance, above the value found: upper bound of k if it d
 # Relative standard error of k, of the model and of chance together.
 WEAK_ABOVE, UNRESOLVED_ABOVE = 0.25, 0.5
 EDGE = 0.05  # of ln k: a value so near the edge of the range that was searched is the edge's
+# Columns of consistency.csv that have another name than their field.
+COLUMNS = {"k": "k_N_per_m", "c": "c_N_s_per_m", "frequency": "frequency_Hz", "note": "reason"}
 
 
 @dataclass(frozen=True)
@@ -48,8 +50,8 @@ class Estimate:
     flag: the doubts about the estimate beyond its standard error, see guards; mostly empty. A
         flagged estimate takes no part in the recommended values.
     k_bound: N/m, the upper bound of k if it does not differ from 0; else NaN.
-    caution: further remarks on the case, whatever the method.
     contact_fraction: share of time in contact of the support that is touched most; NaN if unknown.
+    caution: further remarks on the case, whatever the method.
     group, direction: the supports that share k and c, and the direction that they act in.
     """
 
@@ -64,8 +66,8 @@ class Estimate:
     note: str = ""
     flag: str = ""
     k_bound: float = np.nan
-    caution: str = ""
     contact_fraction: float = np.nan
+    caution: str = ""
     group: str = ""
     direction: str = ""
 
@@ -155,42 +157,22 @@ def mark_weak(estimate: Estimate, note: str) -> Estimate:
     return replace(estimate, quality=quality, note=joined(estimate.note, note))
 
 
-def reason_needed(estimate: Estimate) -> bool:
-    """Return True when the quality of k or a missing c must be explained."""
-    return estimate.quality != "ok" or (estimate.note != "" and not np.isfinite(estimate.c))
-
-
 def table_rows(estimates: Iterable[Estimate], attributes: Mapping[str, Any]) -> list[dict]:
     """Return one dict per Estimate with the columns of consistency.csv.
 
     attributes: gap_m (m), load_rms_N (N) and seed of the case.
     """
+    gap, load = float(attributes["gap_m"]), float(attributes["load_rms_N"])
+    case = {"gap_m": gap, "load_rms_N": load, "load_over_gap": load / gap}
+    case["seed"] = int(attributes["seed"])
     rows = []
     for estimate in estimates:
         values = asdict(estimate)
-        rows.append(
-            {
-                "gap_m": float(attributes["gap_m"]),
-                "load_rms_N": float(attributes["load_rms_N"]),
-                "load_over_gap": float(attributes["load_rms_N"]) / float(attributes["gap_m"]),
-                "seed": int(attributes["seed"]),
-                "group": values["group"],
-                "direction": values["direction"],
-                "method": values["method"],
-                "k_N_per_m": values["k"],
-                "k_standard_error": values["k_standard_error"],
-                "c_N_s_per_m": values["c"],
-                "c_standard_error": values["c_standard_error"],
-                "frequency_Hz": values["frequency"],
-                "damping_ratio": values["damping_ratio"],
-                "quality": values["quality"],
-                "reason": values["note"] if reason_needed(estimate) else "",
-                "flag": values["flag"],
-                "k_bound": values["k_bound"],
-                "contact_fraction": values["contact_fraction"],
-                "caution": values["caution"],
-            }
-        )
+        if estimate.quality == "ok" and np.isfinite(estimate.c):  # nothing to be explained
+            values["note"] = ""
+        place = {name: values.pop(name) for name in ("group", "direction")}
+        named = {COLUMNS.get(name, name): value for name, value in values.items()}
+        rows.append({**case, **place, **named})
     return rows
 
 

@@ -62,7 +62,9 @@ def graded_supports(
         k, error = float(found.k[index]), float(np.sqrt(total[index, index]))
         chance = float(np.sqrt(found.covariance[index, index]))
         floor = MODEL_SIGMAS * np.sqrt(max(error**2 - chance**2, 0.0)) + CHANCE_SIGMAS * chance
-        reason = _why_unresolved(k, error, search)
+        reason = "no finite support has this response"
+        if np.isfinite(k) and np.isfinite(error):
+            reason = edge_of_range(k, search.stiffness_range)
         bound = np.nan
         if not reason and floor > saturation[index]:
             margin = floor - (CHANCE_SIGMAS - BOUND_SIGMAS) * chance
@@ -85,13 +87,6 @@ def graded_supports(
         c_error = float(np.sqrt(total[count + index, count + index]))
         estimates.append(_with_damping(estimate, float(found.c[index]), c_error, search))
     return estimates
-
-
-def _why_unresolved(k: float, error: float, search: SupportSearch) -> str:
-    """Return why no method could find this k, or an empty text."""
-    if not np.isfinite(k) or not np.isfinite(error):
-        return "no finite support has this response"
-    return edge_of_range(k, search.stiffness_range)
 
 
 def _with_damping(estimate: Estimate, c: float, error: float, search: SupportSearch) -> Estimate:

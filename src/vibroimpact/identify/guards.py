@@ -18,7 +18,7 @@ from vibroimpact.integration.energy_limit import energy_flag
 from vibroimpact.reduction.basis_accuracy import STIFFNESSES
 from vibroimpact.reduction.modal_model import ModalModel
 
-from .estimate import PEAK_METHODS, Estimate, flagged, joined, unresolved
+from .estimate import PEAK_METHODS, Estimate, flagged, joined
 from .peak import LEVELS, PeakFit, level_edges
 
 # Degrees of freedom of a spectral bin. The scatter of the segments has half of them less one, so
@@ -104,12 +104,15 @@ def _without_value(estimate: Estimate, reason: str) -> Estimate:
     """Return the estimate flagged and without k and c, or as it is for an empty reason."""
     if not reason:
         return estimate
-    note = joined(reason, estimate.note)
-    empty = unresolved(estimate.method, note, estimate.frequency, estimate.damping_ratio)
     return replace(
-        empty,
-        group=estimate.group,
-        direction=estimate.direction,
+        estimate,
+        k=np.nan,
+        k_standard_error=np.nan,
+        c=np.nan,
+        c_standard_error=np.nan,
+        k_bound=np.nan,
+        quality="unresolved",
+        note=joined(reason, estimate.note),
         flag=joined(estimate.flag, reason),
     )
 

@@ -62,16 +62,6 @@ def identify_case(
     spectra: dataset of study.case_spectra. If its attribute `force` is "unknown", broadband is
         not resolved. A variable force_psd (low_frequency,) is the relative PSD of the force.
     """
-    estimates, curves = _identify(config, model, record, spectra)
-    averages, search_Hz = float(spectra["effective_averages"]), config.identification.peak_search_Hz
-    unusable = unusable_channels(spectra)
-    return guarded(estimates, record, averages, search_Hz, unusable), curves
-
-
-def _identify(
-    config: ConfigPart, model: ModalModel, record: xr.Dataset | None, spectra: xr.Dataset
-) -> tuple[list[Estimate], xr.Dataset]:
-    """Return the results of identify_case, before its guards."""
     directions, modes = reached_supports(model, config.identification.groups)
     layout = spectra_layout(config, spectra)
     if len(directions) > 1 or not acts_on_all(directions[0], model, modes):
@@ -85,7 +75,9 @@ def _identify(
         estimates = [estimate.at(directions[0]) for estimate in estimates]
     if record is not None:
         estimates += comparison_estimates(config, model, record, directions)
-    return estimates, curves
+    averages, search_Hz = float(spectra["effective_averages"]), config.identification.peak_search_Hz
+    unusable = unusable_channels(spectra)
+    return guarded(estimates, record, averages, search_Hz, unusable), curves
 
 
 def _identify_all_alike(

@@ -25,13 +25,12 @@ class Minimum:
     """The end of a minimisation.
 
     values (value,); error (residual,) there; slope (residual, value): the Jacobian at the point of
-    the last step; passes: steps that were tried; cost = |error|².
+    the last step; cost = |error|².
     """
 
     values: np.ndarray
     error: np.ndarray
     slope: np.ndarray
-    passes: int
 
     @property
     def cost(self) -> float:
@@ -61,7 +60,6 @@ def minimise(
     error, slope = evaluate(values)
     if not np.isfinite(error).all():
         raise ValueError("the least squares have no finite error at their start")
-    done = 0
     for done in range(1, passes + 1):
         length = np.maximum(np.sqrt(np.sum(slope**2, axis=0)), 1.0e-12)
         scaled = slope / length
@@ -79,7 +77,7 @@ def minimise(
         if before - error @ error < settled * before or done == passes:
             break
         error, slope = evaluate(values)
-    return Minimum(values, error, slope, done)
+    return Minimum(values, error, slope)
 
 
 def differences(

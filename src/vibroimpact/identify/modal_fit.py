@@ -135,8 +135,12 @@ def refine_modes(
     modes: IdentifiedModes, levels: Sequence[LevelLines], band_Hz: Sequence[float]
 ) -> IdentifiedModes:
     """Return the modes of least relative error over all records, by Levenberg-Marquardt."""
-    weights, wanted = zip(*(_weighted(level, band_Hz) for level in levels), strict=True)
-    grids = [level.frequency[level.excited(band_Hz)] for level in levels]
+    grids, weights, wanted = [], [], []
+    for level in levels:  # force and response, each (channel, line), over the size of the channel
+        inside, scale = level.excited(band_Hz), channel_scale(level, band_Hz)
+        grids.append(level.frequency[inside])
+        weights.append(level.force[inside] / scale)
+        wanted.append(level.response[:, inside] / scale)
     ridge = Ridge(modes)
 
     def evaluate(values):
@@ -207,12 +211,6 @@ def channel_scale(level: LevelLines, band_Hz: Sequence[float]) -> np.ndarray:
     return np.sqrt(
         np.sum(np.abs(level.response[:, level.excited(band_Hz)]) ** 2, axis=1, keepdims=True)
     )
-
-
-def _weighted(level: LevelLines, band_Hz: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
-    """Return (force, response), each (channel, line), over the size of the channel."""
-    inside, scale = level.excited(band_Hz), channel_scale(level, band_Hz)
-    return level.force[inside] / scale, level.response[:, inside] / scale
 
 
 def _derivatives(modes: IdentifiedModes, frequency: np.ndarray, weight: np.ndarray) -> np.ndarray:

@@ -1,4 +1,5 @@
-"""The pole of the main peak from the outputs alone: LSCF on half spectra.
+"""The pole of the main peak from the outputs alone: LSCF on half ("positive") spectra, which hold
+each mode once.
 
 The pole of the first stable order is taken. At low orders the estimator is biased by the modes
 outside the band; at high orders it follows the noise. So a low order is taken and its bias is
@@ -12,19 +13,66 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.identify.linear.poles import frequency_of
+from vibroimpact.identify.spectra.window_leakage import window_autocorrelation
 
-from .half_spectra import half_spectra, lag_window
 from .lscf import NormalEquations
 from .segment_scatter import jackknife_influences, widened
 from .stabilisation import StabilisationChart, first_stable_order, nearest_pole, stabilisation_chart
 
 LAG_TIMES_WIDTH = 0.6  # longest lag used, times the peak's half-power width
 SHORTEST_LAG_S = 0.5
+LAST_WEIGHT = 0.01
 BIAS_PASSES = 2
 # How far from the peak its pole is searched: in half-power widths, and at least as a fraction of
 # the peak's frequency.
 SEARCH_WIDTHS = 2.0
 LEAST_SEARCH_RADIUS = 0.06
+
+
+@dataclass(frozen=True)
+class LagWindow:
+    """The weights of correlations before they are transformed back to spectra.
+
+    weights: (lag,).
+    decay: 1/s, that the exponential window adds to the decay of every mode; to be subtracted.
+    """
+
+    weights: np.ndarray
+    decay: float
+
+
+def lag_window(window: str, samples: int, segment_s: float, longest_lag_s: float) -> LagWindow:
+    """Return the LagWindow: an exponential over the autocorrelation of the analysis window.
+
+    Division by the autocorrelation removes the window's widening of the peaks exactly. The
+    exponential suppresses the noise of late lags, and its decay is known.
+
+    window: name of the analysis window.
+    samples: lags in one segment of segment_s seconds.
+    longest_lag_s: s, at which the exponential has fallen to LAST_WEIGHT.
+    """
+    lags = max(2, min(int(longest_lag_s / segment_s * samples), samples // 2))
+    decay = -np.log(LAST_WEIGHT) / longest_lag_s
+    exponential = np.exp(-decay * np.arange(lags) * (segment_s / samples))
+    weights = exponential / window_autocorrelation(window, samples, lags)
+    weights[0] *= 0.5  # lag 0 belongs half to each side
+    return LagWindow(weights, float(decay))
+
+
+def half_spectra(cross_spectra: np.ndarray, lags: LagWindow, band: slice) -> np.ndarray:
+    """Return the half spectra (..., bin) of averaged one-sided cross-spectra (..., frequency).
+
+    A mode with pole p appears once, as A / (i omega + decay - p), with a positive decay. Source:
+    Verboven, PhD thesis, Vrije Universiteit Brussel 2002 (output-only estimators use positive power
+    spectra).
+
+    cross_spectra: unit²/Hz, frequencies contiguous from 0.
+    lags: LagWindow made for 2 (frequency - 1) samples.
+    band: slice of the bins wanted.
+    """
+    samples = 2 * (cross_spectra.shape[-1] - 1)
+    correlation = np.fft.irfft(cross_spectra, samples, axis=-1)[..., : lags.weights.size]
+    return np.fft.rfft(correlation * lags.weights, samples, axis=-1)[..., band]
 
 
 @dataclass(frozen=True)
@@ -69,10 +117,6 @@ class PoleSearch:
             int(first), int(np.searchsorted(self.frequency, self.band_Hz[1], side="right"))
         )
 
-    def chart_orders(self) -> list[int]:
-        """Return the orders of the chart: each up to 8, every second one above."""
-        return [order for order in range(2, self.max_order + 1) if order <= 8 or order % 2 == 0]
-
 
 def operational_pole(
     outputs: np.ndarray,
@@ -103,7 +147,8 @@ def operational_pole(
     band_frequency = search.frequency[search.band]
     mean = halves.mean(axis=0)
     equations = NormalEquations(band_frequency, mean, search.max_order)
-    chart = stabilisation_chart(equations, lags.decay, search.chart_orders())
+    orders = [order for order in range(2, search.max_order + 1) if order <= 8 or order % 2 == 0]
+    chart = stabilisation_chart(equations, lags.decay, orders)
     start = 2.0 * np.pi * complex(-0.5 * peak[1], peak[0])
     radius_Hz = max(SEARCH_WIDTHS * peak[1], LEAST_SEARCH_RADIUS * peak[0])
     order, stable = first_stable_order(chart, start, radius_Hz)

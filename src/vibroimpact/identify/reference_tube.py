@@ -52,13 +52,19 @@ class ReferenceTube:
     def broadband_map(self) -> FamilyMap:
         """Return the FamilyMap of the broadband sensor."""
         k = np.geomspace(*self.layout.stiffness_range, MAP_STIFFNESSES)
-        c = np.array([[self._map_damping(each, factor) for factor in MAP_DAMPING] for each in k])
+        c = np.array(
+            [
+                [
+                    max(
+                        self.damping_for(each, factor * self.first_damping_ratio(each)),
+                        self.lowest_stable_damping(each),
+                    )
+                    for factor in MAP_DAMPING
+                ]
+                for each in k
+            ]
+        )
         return family_map(self.at_broadband, self.layout.kernel, k, c)
-
-    def _map_damping(self, k: float, factor: float) -> float:
-        """Return the c in N s/m that multiplies the first damping ratio by a factor, if stable."""
-        c = self.damping_for(k, factor * self.first_damping_ratio(k))
-        return max(c, self.lowest_stable_damping(k))
 
     @cached_property
     def _first_modes(self) -> tuple[np.ndarray, ...]:

@@ -71,9 +71,11 @@ def statistical_linearisation(
     force_psd = load_rms_N**2 / (band_Hz[1] - band_Hz[0])
     settled, relaxation, change_before = False, 0.7, np.inf
     for _ in range(PASSES):
-        variance, frequency, ratio = _contact_variance(
-            model, modes, shapes, stiffness, drive[modes], force_psd, band_Hz
+        held = np.diag(model.omega[modes] ** 2) + (shapes * stiffness) @ shapes.T
+        power, omega, decay = power_in_band(
+            held, model.damping[modes], shapes, drive[modes], band_Hz
         )
+        variance = force_psd * power
         wanted = model.contact_stiffness[point] * erfc(gap / np.sqrt(2.0 * variance))
         change = np.max(np.abs(wanted - stiffness)) / (np.max(wanted) + 1.0e-9)
         if change < TOLERANCE:
@@ -93,36 +95,34 @@ def statistical_linearisation(
         float(total),
         work.reshape(-1, 2),
         square.reshape(-1, 2),
-        float(frequency),
-        float(ratio),
+        float(omega[0] / (2.0 * np.pi)),
+        float(decay[0] / omega[0]),
         settled,
     )
 
 
-def _contact_variance(
-    model: ModalModel,
-    modes: np.ndarray,
-    shapes: np.ndarray,
+def power_in_band(
     stiffness: np.ndarray,
+    damping: np.ndarray,
+    outputs: np.ndarray,
     drive: np.ndarray,
-    force_psd: float,
     band_Hz: Sequence[float],
-) -> tuple[np.ndarray, float, float]:
-    """Return (variance (contact,) in m², first frequency in Hz, its damping ratio).
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return (power (output,) under a force of unit PSD in a band, omega, decay (mode,) in rad/s).
 
-    They are those of the linear tube with these contact stiffnesses. The part of the damping matrix
-    that couples the modes of the tube on its contacts is neglected: it is of second order in the
-    damping.
+    The power is NaN if a mode is overdamped. The part of the damping matrix that couples the modes
+    is neglected: it is of second order in the damping.
+
+    stiffness (mode, mode) 1/s², damping (mode,) 1/s, outputs (mode, output), drive (mode,): on
+        mass-orthonormal modes.
     """
-    square, vectors = np.linalg.eigh(
-        np.diag(model.omega[modes] ** 2) + (shapes * stiffness) @ shapes.T
-    )
-    omega = np.sqrt(square)
-    decay = 0.5 * (vectors**2).T @ model.damping[modes]
+    square, vectors = np.linalg.eigh(stiffness)
+    decay = 0.5 * (vectors**2).T @ damping
+    if np.any(square <= decay**2):
+        return np.full(outputs.shape[1], np.nan), np.full(len(decay), np.nan), decay
     poles = -decay + 1j * np.sqrt(square - decay**2)
-    gains = (shapes.T @ vectors) * (vectors.T @ drive)
-    variance = force_psd * band_power(poles, gains, band_Hz)
-    return variance, omega[0] / (2.0 * np.pi), decay[0] / omega[0]
+    gains = (outputs.T @ vectors) * (vectors.T @ drive)
+    return band_power(poles, gains, band_Hz), np.sqrt(square), decay
 
 
 def band_power(poles: np.ndarray, gains: np.ndarray, band_Hz: Sequence[float]) -> np.ndarray:

@@ -169,24 +169,19 @@ class ShapeComparison:
         scale = self.factor[:, None]
         residual = _parts(across * scale)
         jacobian = np.array([_parts(column * scale) for column in slope]).T
-        expected, expected_slope = self._expected_loss(k, c)
-        return np.concatenate([residual, expected]), np.vstack([jacobian, expected_slope])
-
-    def _expected_loss(self, k: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return (departure (direction,) from the loss expected, jacobian (direction, ...))."""
         loss = self.search.omega * c / k
-        departure = (loss - LOSS) / LOSS_SCATTER
         by_k, by_c = np.diag(-loss / LOSS_SCATTER), np.diag(self.search.omega / k / LOSS_SCATTER)
-        return departure, np.hstack([by_k, by_c])
+        return (
+            np.concatenate([residual, (loss - LOSS) / LOSS_SCATTER]),
+            np.vstack([jacobian, np.hstack([by_k, by_c])]),
+        )
 
     def _shapes(self, k: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return (shapes G u (block, line_point), derivatives (2 direction, block, line_point))."""
         response, slope = self.structure.frf_slope(self.observed, k, c)
         laplace = 2j * np.pi * self.structure.frequency[self.observed.part, None, None]
         by = np.concatenate([slope * k[:, None, None, None], slope * laplace])
-        seen = np.einsum("fpc,bp->bfc", response.conj(), self.measured.shapes, optimize=True)
-        weighted = seen * self.share[:, :, None]
-        shape = np.einsum("fpc,bfc->bp", response, weighted, optimize=True)
+        weighted, shape = self._shape(response)
         changes = []
         for change in by:
             moved = np.einsum("fpc,bp->bfc", change.conj(), self.measured.shapes, optimize=True)
@@ -196,11 +191,15 @@ class ShapeComparison:
             )
         return shape, np.array(changes)
 
+    def _shape(self, response: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return (h^H u (block, frequency, channel) by its share, G u (block, line_point))."""
+        seen = np.einsum("fpc,bp->bfc", response.conj(), self.measured.shapes, optimize=True)
+        weighted = seen * self.share[:, :, None]
+        return weighted, np.einsum("fpc,bfc->bp", response, weighted, optimize=True)
+
     def cost(self, k: np.ndarray, c: np.ndarray) -> float:
         """Return the squared residual of k (direction,) in N/m and c (direction,) in N s/m."""
-        response = self.structure.frf(self.observed, k, c)
-        seen = np.einsum("fpc,bp->bfc", response.conj(), self.measured.shapes, optimize=True)
-        shape = np.einsum("fpc,bfc->bp", response, seen * self.share[:, :, None], optimize=True)
+        _, shape = self._shape(self.structure.frf(self.observed, k, c))
         along = np.abs(np.sum(shape.conj() * self.measured.shapes, axis=1)) ** 2
         across = 1.0 - along / np.sum(np.abs(shape) ** 2, axis=1)
         return float(np.sum(self.factor**2 * across))

@@ -79,15 +79,12 @@ def origin(params: Mapping[str, Any], library: str) -> dict[str, str]:
     }
 
 
-def verdict_origin(
-    params: Mapping[str, Any], campaign: Path | str, seed: int | str | None
-) -> dict[str, Any]:
+def verdict_origin(params: Mapping[str, Any], campaign: Path | str) -> dict[str, Any]:
     """Return {name: value} of the origin of a verdict: version, digests of the whole package, of
-    the campaign file and of the configuration, seed, versions of packages.
+    the campaign file and of the configuration, seed (None: nothing is drawn), versions of packages.
 
     params: the configuration in plain values.
     campaign: the campaign file.
-    seed: of the random streams, None if nothing is drawn.
     """
     with open(campaign, "rb") as file:
         digest = hashlib.file_digest(file, "sha256").hexdigest()[:DIGEST_LENGTH]
@@ -96,7 +93,7 @@ def verdict_origin(
         "source_digest": package_digest(),
         "campaign_digest": digest,
         "configuration_digest": config_digest(params),
-        "seed": seed,
+        "seed": None,
         "versions": " ".join(f"{name} {version}" for name, version in versions().items()),
     }
 

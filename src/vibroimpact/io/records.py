@@ -173,7 +173,7 @@ def read_record(path: str | Path, names: Iterable[str] | None = None) -> xr.Data
 
     Raises RecordError when there is no such file, it is not netCDF, or lacks a variable.
     """
-    with _opened(path, MAKE_AGAIN) as file:
+    with _opened(path) as file:
         file.set_auto_maskandscale(False)
         names = list(file.variables) if names is None else list(names)
         missing = [name for name in names if name not in file.variables]
@@ -198,13 +198,13 @@ def read_record(path: str | Path, names: Iterable[str] | None = None) -> xr.Data
 
 
 @contextmanager
-def _opened(path: str | Path, remedy: str) -> Iterator[netCDF4.Dataset]:
+def _opened(path: str | Path) -> Iterator[netCDF4.Dataset]:
     """Open a netCDF file to read it. Raises RecordError, also if reading in the block fails."""
     try:
         with netCDF4.Dataset(path) as file:
             yield file
     except (OSError, RuntimeError) as error:  # netCDF4 gives the latter for damaged data
-        raise RecordError(f"{path}: cannot be read as netCDF ({error}): {remedy}") from error
+        raise RecordError(f"{path}: cannot be read as netCDF ({error}): {MAKE_AGAIN}") from error
 
 
 def _labels_of(file: netCDF4.Dataset, name: str) -> bool:
@@ -241,7 +241,7 @@ def _variable(stored: netCDF4.Variable) -> tuple[xr.Variable, list[str]]:
 
 def read_attributes(path: str | Path) -> dict[str, Any]:
     """Return the global attributes of a file of write_record. Raises RecordError."""
-    with _opened(path, MAKE_AGAIN) as file:
+    with _opened(path) as file:
         return {name: file.getncattr(name) for name in file.ncattrs()}
 
 
@@ -411,11 +411,11 @@ def write_table(rows: list[dict], path: str | Path, columns: tuple[str, ...] = (
     columns: the header of a table that may have no rows.
     """
     columns = tuple(rows[0]) if rows else tuple(columns)
-    write_cells(columns, ([_plain(row[column]) for column in columns] for row in rows), path)
+    write_cells(columns, ([row[column] for column in columns] for row in rows), path)
 
 
 def write_cells(columns: Iterable[str], rows: Iterable, path: str | Path) -> None:
-    """Write rows of plain Python values under a header as CSV, whole or not at all.
+    """Write rows of values under a header as CSV, whole or not at all.
 
     A text that a spreadsheet would take for a formula gets an apostrophe in front, which read_table
     takes away.
@@ -466,13 +466,10 @@ def read_table(path: str | Path, texts: Iterable[str] = ()) -> list[dict[str, An
     ]
 
 
-def _plain(value):
-    # csv writes a float in full, but a float32 in its own few digits.
-    return float(value) if isinstance(value, np.floating) else value
-
-
 def _cell(value):
     """Return a value as it is written; as text, a formula would be computed by a spreadsheet."""
+    if isinstance(value, np.floating):  # csv writes a float in full, a float32 in few digits
+        return float(value)
     formula = isinstance(value, str) and FORMULA.match(value) and isinstance(_number(value), str)
     return f"'{value}" if formula else value
 

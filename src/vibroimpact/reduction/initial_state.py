@@ -62,7 +62,12 @@ def initial_state(
         else:
             wanted = _along_the_tube(structure, key, field)
             fields[f"initial_{key}"], residuals[number] = projected(structure.mass, shapes, wanted)
-            _refuse_residual(key, residuals[number])
+            if residuals[number] > LARGEST_RESIDUAL:
+                raise ValueError(
+                    f"initial.{key}: the modes represent the field with a residual of"
+                    f" {residuals[number]:.3g} (at most {LARGEST_RESIDUAL}, in the norm of the"
+                    " mass): raise basis.free_modes_to_Hz or give a smoother field"
+                )
     return fields | {"initial_residual": residuals}
 
 
@@ -77,16 +82,6 @@ def projected(mass: Any, shapes: np.ndarray, field: np.ndarray) -> tuple[np.ndar
     left = field - shapes @ amplitudes
     size = float(field @ momentum)
     return amplitudes, float(np.sqrt(max(left @ (mass @ left), 0.0) / size)) if size else 0.0
-
-
-def _refuse_residual(key: str, residual: float) -> None:
-    """Raise ValueError when too much of a field is lost."""
-    if residual > LARGEST_RESIDUAL:
-        raise ValueError(
-            f"initial.{key}: the modes represent the field with a residual of {residual:.3g} (at"
-            f" most {LARGEST_RESIDUAL}, in the norm of the mass): raise basis.free_modes_to_Hz or"
-            " give a smoother field"
-        )
 
 
 def _at_points(structure: Any, initial: ConfigPart, key: str) -> np.ndarray:
@@ -164,8 +159,9 @@ def _spline(structure: Any, key: str, field: ConfigPart) -> np.ndarray:
     places = np.array([line.locate(value.at_m, f"initial.{key}") for value in field.values])
     places[[0, -1]] = 0.0, line.length
     values = np.array([getattr(value, KEYS[key][0]) for value in field.values])
-    ends = tuple(
-        (1, np.zeros(3)) if clamped else "not-a-knot" for clamped in _clamped_ends(structure)
+    rows = structure.transformation.tocsr()
+    ends = tuple(  # an end that can not turn has no motion
+        "not-a-knot" if end.nnz else (1, np.zeros(3)) for end in (rows[:6], rows[-6:])
     )
     from scipy.interpolate import CubicSpline  # half a second that others save
 
@@ -173,9 +169,3 @@ def _spline(structure: Any, key: str, field: ConfigPart) -> np.ndarray:
     tangents = np.array([line.direction(place) for place in structure.node_arc_length])
     turned = np.cross(tangents, spline(structure.node_arc_length, 1))
     return np.hstack([spline(structure.node_arc_length), turned])
-
-
-def _clamped_ends(structure: Any) -> tuple[bool, bool]:
-    """Return whether (start, end) of a tube can not turn."""
-    rows = structure.transformation.tocsr()
-    return rows[:6].nnz == 0, rows[-6:].nnz == 0

@@ -39,6 +39,7 @@ AXES = {
     "constant_force": ("mode",),
     "fluid_shapes": ("mode", "fluid_row"),
 }
+MODE_FIELDS = tuple(name for name, axes in AXES.items() if axes[0] == "mode")
 NAMES = {
     "support_names": "support",
     "sensor_names": "sensor",
@@ -49,9 +50,10 @@ NAMES = {
 
 NEAR = 0.05  # of a frequency: largest difference of a measured structure from its model
 ROUNDING = 1.0e-9  # of a frequency: a mode that is put NEAR below another is valid
+NEUTRAL: Any = None  # default of a field that __post_init__ fills in: there is nothing of it
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class ModalModel:
     """A linear structure on mass-orthonormal, stiffness-orthogonal shapes, with local forces.
 
@@ -105,57 +107,57 @@ class ModalModel:
 
     omega: np.ndarray
     damping: np.ndarray
-    contact_shapes: np.ndarray
-    contact_directions: np.ndarray
-    contact_weight: np.ndarray
-    support_of_point: np.ndarray
-    support_names: tuple[str, ...]
-    contact_stiffness: np.ndarray
-    gap_factor: np.ndarray
-    centre_offset: np.ndarray
-    contact_position: np.ndarray
+    contact_shapes: np.ndarray = NEUTRAL
+    contact_directions: np.ndarray = NEUTRAL
+    contact_weight: np.ndarray = NEUTRAL
+    support_of_point: np.ndarray = NEUTRAL
+    support_names: tuple[str, ...] = ()
+    contact_stiffness: np.ndarray = NEUTRAL
+    gap_factor: np.ndarray = NEUTRAL
+    centre_offset: np.ndarray = NEUTRAL
+    contact_position: np.ndarray = NEUTRAL
     drive_shapes: np.ndarray
     sensor_shapes: np.ndarray
     sensor_names: tuple[str, ...]
     sensor_positions: np.ndarray
     sensor_directions: np.ndarray
-    line_shapes: np.ndarray
-    line_positions: np.ndarray
-    line_arc_length: np.ndarray
-    stress_shapes: np.ndarray
-    section_names: tuple[str, ...]
+    line_shapes: np.ndarray = NEUTRAL
+    line_positions: np.ndarray = NEUTRAL
+    line_arc_length: np.ndarray = NEUTRAL
+    stress_shapes: np.ndarray = NEUTRAL
+    section_names: tuple[str, ...] = ()
     full_mode_frequencies: np.ndarray
-    # Filled in by __post_init__ if they are None.
-    contact_laws: ContactLaws = None  # type: ignore[assignment]
-    preload: np.ndarray = None  # type: ignore[assignment]
-    element_shapes: np.ndarray = None  # type: ignore[assignment]
+    contact_laws: ContactLaws = NEUTRAL
+    preload: np.ndarray = NEUTRAL
+    element_shapes: np.ndarray = NEUTRAL
     element_names: tuple[str, ...] = ()
-    local_laws: LocalLaws = None  # type: ignore[assignment]
-    initial_displacement: np.ndarray = None  # type: ignore[assignment]
-    initial_velocity: np.ndarray = None  # type: ignore[assignment]
-    initial_residual: np.ndarray = None  # type: ignore[assignment]
-    constant_force: np.ndarray = None  # type: ignore[assignment]
-    fluid_shapes: np.ndarray = None  # type: ignore[assignment]
-    fluid_laws: FluidLaws = None  # type: ignore[assignment]
+    local_laws: LocalLaws = NEUTRAL
+    initial_displacement: np.ndarray = NEUTRAL
+    initial_velocity: np.ndarray = NEUTRAL
+    initial_residual: np.ndarray = NEUTRAL
+    constant_force: np.ndarray = NEUTRAL
+    fluid_shapes: np.ndarray = NEUTRAL
+    fluid_laws: FluidLaws = NEUTRAL
 
     def __post_init__(self) -> None:
         """Fill in the neutral values and check all shapes and values."""
-        modes = np.size(self.omega)
-        neutral: dict[str, Callable[[], Any]] = {  # made where needed: models are replaced often
-            "contact_laws": lambda: ContactLaws.neutral(np.size(self.support_of_point)),
-            "preload": lambda: np.zeros(np.size(self.support_of_point)),
-            "element_shapes": lambda: np.zeros((modes, 0)),
-            "local_laws": lambda: LocalLaws.neutral(len(self.element_names)),
-            "initial_displacement": lambda: np.zeros(modes),
-            "initial_velocity": lambda: np.zeros(modes),
-            "initial_residual": lambda: np.zeros(2),
-            "constant_force": lambda: np.zeros(modes),
-            "fluid_shapes": lambda: np.zeros((modes, 0)),
+        points = np.size(() if self.support_of_point is NEUTRAL else self.support_of_point)
+        elements = len(self.element_names)
+        sizes = {"mode": np.size(self.omega), "contact_point": points, "element": elements}
+        laws: dict[str, Callable[[], Any]] = {  # made where needed: models are replaced often
+            "contact_laws": lambda: ContactLaws.neutral(points),
+            "local_laws": lambda: LocalLaws.neutral(elements),
             "fluid_laws": FluidLaws.neutral,
         }
-        for name, make in neutral.items():
-            if getattr(self, name) is None:
-                object.__setattr__(self, name, make())
+        for name in filter(lambda name: getattr(self, name) is NEUTRAL, (*laws, *AXES)):
+            if name in laws:
+                value = laws[name]()
+            else:
+                shape = [
+                    each if isinstance(each, int) else sizes.get(each, 0) for each in AXES[name]
+                ]
+                value = np.zeros(shape, int if name == "support_of_point" else float)
+            object.__setattr__(self, name, value)
         problems = [*self._wrong_shapes()] or [*self._wrong_values()]
         if problems:
             raise ValueError("the modal model is not valid: " + "; ".join(problems))

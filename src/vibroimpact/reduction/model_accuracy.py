@@ -16,7 +16,7 @@ from vibroimpact.config.name_checks import TUBES
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.structure.contact.local_elements import element_laws
 
-from .reduced_model import full_structure, keeps_all_modes, reduced_basis
+from .reduced_model import full_structure, keeps_all_modes, reduced_basis, spring_rows
 
 COLUMNS = (
     "condition",
@@ -70,14 +70,17 @@ def model_accuracy(config: ConfigPart) -> list[dict[str, Any]]:
         return []
     known = reduced_basis(config)
     omega, shapes = known.omega, known.shapes
-    scale = _lowest_elastic(omega)
-    moved = _spring_rows(structure, local_rows)
+    scale = float(omega[omega > 0.0].min()) if np.any(omega > 0.0) else 1.0  # lowest elastic mode
+    moved = spring_rows(structure, local_rows)
     meshes = [(structure.stiffness, structure.mass, moved)]
     if config.structure.kind in TUBES:
         finer, finer_rows = full_structure(config, halved=True)
-        meshes.append((finer.stiffness, finer.mass, _spring_rows(finer, finer_rows)))
+        meshes.append((finer.stiffness, finer.mass, spring_rows(finer, finer_rows)))
     basis = (sparse.diags_array(omega**2), sparse.eye_array(len(omega)), moved @ shapes)
-    stiffness, excited = _spring_stiffness(structure, config), highest_frequency(config.excitation)
+    _, laws = element_laws(config.elements, np.zeros(len(getattr(structure, "dampers", ()))))
+    contact = np.repeat(structure.contact.stiffness, 2)
+    stiffness = np.concatenate([contact, np.maximum(laws.stiffness, 0.0)])  # N/m of all springs
+    excited = highest_frequency(config.excitation)
     rows = []
     for condition in CONDITIONS:
         springs = stiffness if condition == "on supports" else np.zeros(len(stiffness))
@@ -121,25 +124,6 @@ def mesh_warnings(rows: Iterable[dict[str, Any]]) -> list[str]:
         f" {worst['full_Hz']:.4g} Hz, is off by {100.0 * abs(worst['mesh_error']):.3g} % (at most"
         f" {100.0 * LARGEST_ERROR:g} %): give more elements_per_span or elements_per_bend"
     ]
-
-
-def _lowest_elastic(omega: np.ndarray) -> float:
-    """Return the lowest rad/s above 0 of (mode,) rad/s; 1 if there is none."""
-    return float(omega[omega > 0.0].min(initial=np.inf)) if np.any(omega > 0.0) else 1.0
-
-
-def _spring_rows(structure: Any, local_rows: np.ndarray) -> np.ndarray:
-    """Return (spring, dof) displacements of the contacts, two directions each, and elements."""
-    return np.vstack([structure.contact_rows().reshape(-1, structure.dofs), local_rows])
-
-
-def _spring_stiffness(structure: Any, config: ConfigPart) -> np.ndarray:
-    """Return (spring,) N/m of contacts and local elements, 0 for those that only damp or push."""
-    dampers = np.zeros(len(getattr(structure, "dampers", ())))
-    _, laws = element_laws(config.elements, dampers)
-    return np.concatenate(
-        [np.repeat(structure.contact.stiffness, 2), np.maximum(laws.stiffness, 0.0)]
-    )
 
 
 def _count(basis: System, springs: np.ndarray, scale: float, excited: float) -> int:

@@ -14,7 +14,6 @@ from vibroimpact.excitation.force_vectors import (
     constant_force_vector,
     force_vector,
     turn_axis,
-    with_base_mode,
 )
 from vibroimpact.excitation.turbulence import drive_shapes
 from vibroimpact.geometry.centreline import SAME_PLACE_M
@@ -30,7 +29,6 @@ from .basis import Basis
 from .initial_state import initial_state
 from .modal_model import ModalModel
 from .ritz_basis import (
-    FAMILIES,
     DofGroup,
     basis_vectors,
     group_numbers,
@@ -38,7 +36,12 @@ from .ritz_basis import (
     rigid_body_shift,
     uncoupled_groups,
 )
-from .structural_modifications import with_frequency_factors, with_point_masses, with_support_plates
+from .structural_modifications import (
+    with_base_mode,
+    with_frequency_factors,
+    with_point_masses,
+    with_support_plates,
+)
 
 BASES = Memo()
 AXES = dict(zip("xyz", np.eye(3), strict=True))
@@ -93,13 +96,13 @@ def build_model(
         **_damping_and_element_fields(structure, omega, shapes, local_rows, config),
         **_contact_fields(structure, shapes, config),
         **_force_fields(structure, omega, shapes, config, point_rows),
-        "fluid_shapes": np.zeros((len(omega), 0)),
         **(fluid_fields(structure, shapes, omega, config) if tube else {}),
         **initial_state(structure, shapes, len(full_frequencies), config.initial, point_rows),
         **_sensor_fields(structure, shapes, config, point_rows, gauges),
-        **_line_fields(structure, shapes, config, tube and not motion_only),
-        **_stress_fields(structure, shapes, config, tube and not motion_only),
     }
+    if tube and not motion_only:
+        fields |= _line_fields(structure, shapes, config)
+        fields |= _stress_fields(structure, shapes, config)
     if config.excitation.kind == "base_motion" and config.excitation.obstacles == "fixed":
         fields = with_base_mode(fields, config.excitation, config.initial)
     fields = with_support_plates(fields, config.supports, config.excitation)
@@ -132,6 +135,11 @@ def full_structure(
         ]
     )
     return with_point_masses(structure, config.masses, point_rows), local_rows
+
+
+def spring_rows(structure: Any, local_rows: np.ndarray) -> np.ndarray:
+    """Return (spring, dof) displacements of the contacts, two directions each, and elements."""
+    return np.vstack([structure.contact_rows().reshape(-1, structure.dofs), local_rows])
 
 
 def reduced_basis(config: ConfigPart) -> Basis:
@@ -236,18 +244,13 @@ def _force_fields(
     if config.excitation.kind == "turbulence":
         driven = drive_shapes(structure, shapes, omega, config.excitation)
     else:
-        force = force_vector(structure, point_rows, config.excitation, _axis(config))
+        nowhere = (0.0, 0.0, 0.0)  # not used for the axis of a structure other than a tube
+        place = config.points.get(getattr(config.excitation, "point", None), nowhere)
+        axis = turn_axis(config, place)
+        force = force_vector(structure, point_rows, config.excitation, axis)
         driven = (force @ shapes)[:, None]
     constant = constant_force_vector(structure, point_rows, config.excitation)
     return {"drive_shapes": driven, "constant_force": constant @ shapes}
-
-
-def _axis(config: ConfigPart) -> Sequence[float] | np.ndarray:
-    """Return the axis (3,) about which the force is turned; z if it is not."""
-    if not getattr(config.excitation, "turn_deg", 0.0):
-        return (0.0, 0.0, 1.0)
-    nowhere = (0.0, 0.0, 0.0)  # not used for the axis of a structure other than a tube
-    return turn_axis(config, config.points.get(config.excitation.point, nowhere))
 
 
 def point_rows_of(structure: Any, config: ConfigPart) -> Callable[[str], np.ndarray]:
@@ -269,11 +272,13 @@ def _modes(
     Raises IndefiniteMatrixError.
     """
     basis = config.basis
-    rows = np.vstack([structure.contact_rows().reshape(-1, structure.dofs), local_rows])
+    rows = spring_rows(structure, local_rows)
     matrices = map(sparse.csr_array, (structure.mass, structure.stiffness))
     arrays = [array for each in matrices for array in (each.data, each.indices, each.indptr)]
     key = content_key(repr(basis), rows, *arrays)
-    names = _matrix_names(config.structure)
+    names = ("structure.masses", "structure.springs")
+    if config.structure.kind == "matrices":
+        names = (str(config.structure.mass), str(config.structure.stiffness))
     return BASES.get(key, lambda: _modes_on(structure, rows, basis, names))
 
 
@@ -284,7 +289,7 @@ def _modes_in(
 
     A vector is exactly 0.0 outside its uncoupled group, and so are the shapes.
     """
-    rows = np.vstack([structure.contact_rows().reshape(-1, structure.dofs), local_rows])
+    rows = spring_rows(structure, local_rows)
     mass, stiffness = map(sparse.csr_array, (structure.mass, structure.stiffness))
     arrays = [array for each in (mass, stiffness) for array in (each.data, each.indices)]
     return BASES.get(
@@ -295,7 +300,7 @@ def _modes_in(
 
 def _within(groups: Sequence[DofGroup], basis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the modes of _modes_in, of uncoupled groups."""
-    omegas, columns = [], []
+    parts = []
     for group in groups:
         own = basis[:, np.any(basis[group.dofs] != 0.0, axis=0)]
         inside = own[group.dofs]
@@ -308,18 +313,8 @@ def _within(groups: Sequence[DofGroup], basis: np.ndarray) -> tuple[np.ndarray, 
         omega = np.sqrt(np.maximum(1.0 / flexibility[::-1] - shift, 0.0))
         shapes = np.zeros_like(own)
         shapes[group.dofs] = inside @ (turn / np.sqrt(flexibility))[:, ::-1]
-        omegas.append(omega)
-        columns.append(shapes)
-    omega, shapes = np.concatenate(omegas), np.hstack(columns)
-    order = np.argsort(omega, kind="stable")
-    return omega[order], shapes[:, order]
-
-
-def _matrix_names(structure: ConfigPart) -> tuple[str, str]:
-    """Return the names of mass and stiffness of a structure in messages."""
-    if structure.kind == "matrices":
-        return str(structure.mass), str(structure.stiffness)
-    return "structure.masses", "structure.springs"
+        parts.append((omega, shapes))
+    return _ascending(parts)
 
 
 def keeps_all_modes(structure: Any) -> bool:
@@ -345,15 +340,12 @@ def _modes_on(
         squares[squares < ZERO_SQUARE * max(squares[-1], 1.0e-300)] = 0.0
         omega[group.dofs] = np.sqrt(squares)
         shapes[np.ix_(group.dofs, group.dofs)] = inside
-    order = np.argsort(omega, kind="stable")
-    return omega[order], shapes[:, order], omega[order] / (2.0 * np.pi)
+    omega, shapes = _ascending([(omega, shapes)])
+    return omega, shapes, omega / (2.0 * np.pi)
 
 
 def modal_basis(
-    structure: Any,
-    groups: Sequence[DofGroup],
-    basis: ConfigPart,
-    families: Sequence[str] = FAMILIES,
+    structure: Any, groups: Sequence[DofGroup], basis: ConfigPart
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return (omega (mode,) rad/s ascending, shapes (dof, mode)) of the Ritz basis.
 
@@ -362,14 +354,18 @@ def modal_basis(
     shapes add to the free modes. These are residual vectors, not modes of the tube, and carry the
     local flexibility at the contacts.
     """
-    omegas, columns = [], []
+    parts = []
     for group in groups:
-        omega, inside = orthonormal_basis(group, basis_vectors(group, basis, families))
+        omega, inside = orthonormal_basis(group, basis_vectors(group, basis))
         shapes = np.zeros((structure.dofs, len(omega)))
         shapes[group.dofs] = inside
-        omegas.append(omega)
-        columns.append(shapes)
-    omega, shapes = np.concatenate(omegas), np.hstack(columns)
+        parts.append((omega, shapes))
+    return _ascending(parts)
+
+
+def _ascending(parts: Sequence[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the modes (omega (mode,), shapes (dof, mode)) of all parts, in ascending frequency."""
+    omega, shapes = (np.concatenate(columns, axis=-1) for columns in zip(*parts, strict=True))
     order = np.argsort(omega, kind="stable")
     return omega[order], shapes[:, order]
 
@@ -442,19 +438,11 @@ def _sensor_fields(
     }
 
 
-def _line_fields(
-    structure: Any, shapes: np.ndarray, config: ConfigPart, wanted: bool
-) -> dict[str, Any]:
-    """Return the fields of the shape line; empty if it is not wanted.
+def _line_fields(structure: Any, shapes: np.ndarray, config: ConfigPart) -> dict[str, Any]:
+    """Return the fields of the shape line.
 
     Its points are evenly spaced in arc length between the ends of the tube, ends excluded.
     """
-    if not wanted:
-        return {
-            "line_shapes": np.zeros((shapes.shape[1], 0)),
-            "line_arc_length": np.zeros(0),
-            "line_positions": np.zeros((0, 3)),
-        }
     line = config.record.shape_line
     places = structure.centreline.length * np.arange(1, line.points + 1) / (line.points + 1)
     rows = np.array([AXES[line.direction] @ structure.displacement_rows(place) for place in places])
@@ -465,16 +453,12 @@ def _line_fields(
     }
 
 
-def _stress_fields(
-    structure: Any, shapes: np.ndarray, config: ConfigPart, wanted: bool
-) -> dict[str, Any]:
-    """Return stress_shapes and section_names; empty if they are not wanted.
+def _stress_fields(structure: Any, shapes: np.ndarray, config: ConfigPart) -> dict[str, Any]:
+    """Return stress_shapes and section_names.
 
     Sections are at both ends of the tube, at the edges and middle of each support, at the drive
     point and at the sensors. Sections at the same place appear once, under the first name.
     """
-    if not wanted:
-        return {"section_names": (), "stress_shapes": np.zeros((shapes.shape[1], 0, 2))}
     places = {"root_start": 0.0, "root_end": structure.centreline.length}
     for number, support in enumerate(config.supports):
         points = structure.contact.arc_length[structure.contact.support == number]

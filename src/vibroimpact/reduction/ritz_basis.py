@@ -7,7 +7,7 @@ Families (Thénint, Balmes and Corus 2012, section 2.3):
 - attachment_shapes: static responses to a unit force at each contact point and direction.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -160,19 +160,15 @@ def eigenmodes(
     return _frequencies(1.0 / flexibility[::-1] - shift, shift, stiffness, shapes), shapes
 
 
-def basis_vectors(
-    group: DofGroup, basis: ConfigPart, families: Sequence[str] = FAMILIES
-) -> dict[str, np.ndarray]:
-    """Return {family: (dof, vector)} of the families wanted.
+def basis_vectors(group: DofGroup, basis: ConfigPart) -> dict[str, np.ndarray]:
+    """Return {family: (dof, vector)} of the families that a group has.
 
     Free modes are mass-orthonormal; the other families are not orthogonal to them.
 
     basis: free_modes_to_Hz, constrained_modes_to_Hz, attachment_shapes (bool).
     """
-    vectors = {}
-    if "free_modes" in families:
-        vectors["free_modes"] = group.free_modes(basis.free_modes_to_Hz)[1]
-    if "constrained_modes" in families and len(group.contact):
+    vectors = {"free_modes": group.free_modes(basis.free_modes_to_Hz)[1]}
+    if len(group.contact):
         # Fixed contact points restrict the motion to the null space of their rows. Its basis is
         # orthonormal, so that nothing is badly scaled.
         allowed = linalg.null_space(group.contact)
@@ -182,7 +178,7 @@ def basis_vectors(
             basis.constrained_modes_to_Hz,
         )
         vectors["constrained_modes"] = allowed @ shapes
-    if "attachment_shapes" in families and basis.attachment_shapes and len(group.contact):
+    if basis.attachment_shapes and len(group.contact):
         vectors["attachment_shapes"] = linalg.cho_solve((group.factor, True), group.contact.T)
     return {family: shapes for family, shapes in vectors.items() if shapes.shape[1]}
 

@@ -5,8 +5,6 @@ the same. Their first lines are comments of reStructuredText: `.. category: Resp
 `.. title: Spectra of all loads`.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from pathlib import Path

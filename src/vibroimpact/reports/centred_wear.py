@@ -1,7 +1,5 @@
 """The effect of centred obstacles on wear, in a sentence: for figures and page."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

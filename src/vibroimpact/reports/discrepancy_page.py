@@ -5,8 +5,6 @@ that the records demand, the effect with its values, its gain on held-out record
 compared and why one is taken, and the measurement that would separate the rest.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -15,7 +13,7 @@ from vibroimpact.effects.effect import TESTS
 from vibroimpact.effects.places import place_in_words
 from vibroimpact.effects.registry import EFFECTS, effects_in_words
 
-from .explanations import best_places, chance_text, explanations_of
+from .explanations import chance_text, explanations_of
 from .number_text import digits, percent, span
 from .page import embedded, rendered
 from .table import table_of
@@ -23,10 +21,8 @@ from .verdict_words import (
     for_reading,
     judgement,
     next_steps,
-    probability_text,
     unit_text,
     verdict_sentence,
-    where_it_shows,
     withdrawn_sentence,
 )
 
@@ -47,8 +43,7 @@ SECTIONS = {
     "diagnosis_law": "law",
     "diagnosis_place": "what",
 }
-BAR_PX = 240  # of a probability of 1
-MOST_ROWS, MOST_REGIONS, MOST_MODES = 20, 10, 6
+MOST_ROWS, MOST_REGIONS = 20, 10
 LEVEL_ORDER = {"refuse": 0, "warn": 1, "not checked": 2, "pass": 3}
 # Meanings of the floor of the misfit.
 FREE_RUNS = "that between two free runs of one model"
@@ -87,12 +82,8 @@ def discrepancy_page(
         completed=bool(verdict.shown_effects()),
         heading=HEADINGS.get(verdict.verdict, "The structure"),
         figures=sections,
-        probabilities=explanations_of(verdict)[:MOST_ROWS],
-        bar_px=BAR_PX,
-        chance_text=chance_text,
-        probability_text=probability_text,
+        probabilities=bool(explanations_of(verdict)),
         regions=_regions(verdict),
-        where_it_shows=where_it_shows(verdict),
         broken="; ".join(tests),
         effects=_effects(verdict),
         misfit=_misfit(verdict),
@@ -102,14 +93,14 @@ def discrepancy_page(
         checks=_checks(verdict),
         seconds=digits(verdict.seconds),
         stages=_stages(verdict),
-        provenance=[*_flat(verdict.provenance)],
+        provenance=verdict.provenance.items(),
     )
 
 
 def _ranking(verdict):
     """Return the Table of the explanations that were tried, each at its best place."""
     rows, known = [], set()
-    for row in best_places([row.to_values() for row in verdict.ranking])[:MOST_ROWS]:
+    for row in [each.to_values() for each in verdict.ranking[:MOST_ROWS]]:
         ids = tuple(sorted(row["ids"]))
         rows.append(
             {
@@ -122,9 +113,7 @@ def _ranking(verdict):
             }
         )
         known.add(ids)
-    scored = any(row.heldout_score is not None for row in verdict.ranking)
-    hidden = [] if explanations_of(verdict) else ["probability"]
-    return table_of(rows, hidden + ([] if scored else ["score on held-out records"]))
+    return table_of(rows, () if explanations_of(verdict) else ("probability",))
 
 
 def _checks(verdict):
@@ -212,33 +201,19 @@ def _misfit(verdict):
 
 def _regions(verdict):
     """Return the Table of the bands that differ most."""
-    rows = []
-    for region in verdict.regions[:MOST_REGIONS]:
-        # To three digits and each once: a symmetric tube has some modes twice.
-        modes = list(dict.fromkeys(map(digits, region.nearest_modes_Hz or ())))
-        more = " ..." if len(modes) > MOST_MODES else ""
-        row = {
+    return table_of(
+        {
             "band (Hz)": " to ".join(digits(edge) for edge in region.band_Hz),
             "channel": region.channel,
             f"load ({verdict.load_unit} RMS)": digits(region.load_rms_N),
             "gap (mm)": digits(region.gap_m * 1e3) if region.gap_m is not None else "-",
             "measured / simulated (dB)": _signed(region.discrepancy_dB),
             "z": _signed(region.z),
-            "nearest modes (Hz)": ", ".join(modes[:MOST_MODES]) + more,
         }
-        rows.append(row)
-    known = rows and rows[0]["nearest modes (Hz)"]
-    return table_of(rows, () if known else ("nearest modes (Hz)",))
+        for region in verdict.regions[:MOST_REGIONS]
+    )
 
 
 def _signed(value):
     """Return a number with its sign, - if there is none."""
     return "-" if value is None else f"{value:+.1f}"
-
-
-def _flat(values, prefix=""):
-    for key, value in values.items():
-        if isinstance(value, dict):
-            yield from _flat(value, f"{prefix}{key}.")
-        else:
-            yield f"{prefix}{key}", value

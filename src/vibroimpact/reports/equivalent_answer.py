@@ -3,42 +3,31 @@
 k (N/m) and c (N s/m) are per support. A value that is not resolved is NaN and has a reason.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from vibroimpact.study import method_agreement
+from vibroimpact.equivalent_support.answer import Span
+from vibroimpact.study.equivalent_table import VALUES
+from vibroimpact.study.method_agreement import by_place, compared_spans, place_of
 from vibroimpact.study.reasons import NOT_MOVED
 
-COMPARED = {"k": method_agreement.COMPARED, "c": method_agreement.COMPARED_DAMPING}
 ALL_SUPPORTS = "all"
-UNITS = {"k": "N_per_m", "c": "N_s_per_m"}
 
 
 @dataclass(frozen=True)
-class Value:
-    """A recommended value with its interval over seeds.
+class Value(Span):
+    """A recommended value with its interval over seeds, in N/m or N s/m.
 
-    value, low, high: N/m or N s/m; NaN if not resolved.
     agreement: one of method_agreement.VERDICTS.
     reason: why it is not resolved, or further remarks; empty for nothing.
     methods: medians of the compared methods that resolve it.
     """
 
-    value: float
-    low: float
-    high: float
-    agreement: str
+    agreement: str = ""
     reason: str = ""
     methods: Mapping[str, float] = field(default_factory=dict)
-
-    @property
-    def resolved(self) -> bool:
-        """Whether there is a value."""
-        return math.isfinite(self.value)
 
     @property
     def apart(self) -> float:
@@ -83,11 +72,9 @@ def answers(summary: Sequence[dict], equivalent: Sequence[dict]) -> list[Answer]
 
     summary: rows of consistency_summary.csv. equivalent: rows of equivalent.csv.
     """
-    methods: dict[tuple, dict[str, dict]] = {}
-    for row in summary:
-        methods.setdefault(_place(row), {})[row["method"]] = row
+    methods = by_place(summary)
     found = [
-        _answer(row, methods.get(_place(row), {}))
+        _answer(row, methods.get(place_of(row), {}))
         for row in equivalent
         if row["reason_k"] != NOT_MOVED
     ]
@@ -100,10 +87,6 @@ def places_of(answers: Sequence[Answer]) -> tuple[list[float], list[tuple[str, s
     return gaps, list(dict.fromkeys((row.group, row.direction) for row in answers))
 
 
-def _place(row: dict) -> tuple[float, float, str, str]:
-    return row["gap_m"], row["load_rms_N"], row["group"], row["direction"]
-
-
 def unmoved(equivalent: Sequence[dict]) -> list[tuple[str, str]]:
     """Return (group, direction) of the supports that the force does not move, each once.
 
@@ -113,22 +96,15 @@ def unmoved(equivalent: Sequence[dict]) -> list[tuple[str, str]]:
     return list(dict.fromkeys((row["group"], row["direction"]) for row in still))
 
 
-def _answer(row: dict[str, Any], methods: dict[str, dict]) -> Answer:
+def _answer(row: dict[str, Any], methods: dict[str, list[dict]]) -> Answer:
     """Return the Answer of a row of equivalent.csv; methods: {method: row of the summary}."""
+    alone = {name: own for name, (own,) in methods.items()}
 
     def value(quantity):
-        medians = {
-            name: methods[name][f"{quantity}_median"]
-            for name in COMPARED[quantity]
-            if name in methods
-        }
-        return Value(
-            row[f"{quantity}_{UNITS[quantity]}"],
-            row[f"{quantity}_low"],
-            row[f"{quantity}_high"],
-            row[f"agreement_{quantity}"],
-            row[f"reason_{quantity}"],
-            {name: median for name, median in medians.items() if math.isfinite(median)},
-        )
+        spans = compared_spans(alone, quantity, several=False)
+        ends = (row[name] for name in (VALUES[quantity], f"{quantity}_low", f"{quantity}_high"))
+        told = row[f"agreement_{quantity}"], row[f"reason_{quantity}"]
+        medians = {name: span[0] for name, span in spans.items() if math.isfinite(span[0])}
+        return Value(*ends, *told, medians)
 
-    return Answer(*_place(row), value("k"), value("c"), row["k_bound"], row["contact_fraction"])
+    return Answer(*place_of(row), value("k"), value("c"), row["k_bound"], row["contact_fraction"])

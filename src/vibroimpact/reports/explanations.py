@@ -1,9 +1,6 @@
 """The explanations of a verdict with their probabilities, as page and figure show them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import Any
 
 from vibroimpact.diagnosis.verdict.content import Verdict
 from vibroimpact.effects.registry import effects_in_words
@@ -79,16 +76,3 @@ def chance_text(value: float | None) -> str:
     if value < 0.01:
         return "below 1 %"
     return "over 99 %" if value > 0.99 else f"{100.0 * value:.0f} %"
-
-
-def best_places(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return the rows of a ranking in plain values, best first, without those that were only
-    screened and whose effects are in a row before at another place.
-    """
-    shown, kept = set(), []
-    for row in rows:
-        ids = tuple(sorted(row["ids"]))
-        if ids not in shown or row.get("heldout_score") is not None:
-            kept.append(row)
-        shown.add(ids)
-    return kept

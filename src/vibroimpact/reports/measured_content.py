@@ -1,7 +1,5 @@
 """The content of the page of a measured tube."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Every page: one template with blocks, one style sheet on the screen and on paper."""
 
-from __future__ import annotations
-
 import base64
 from collections.abc import Iterable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The content of the page of a study."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -26,32 +24,18 @@ from .table import Table
 from .wear_life import wear_sentences
 
 
-@dataclass(frozen=True)
-class Provenance:
-    """The origin of the numbers.
-
-    configuration: the configuration as it ran, as YAML.
-    version: of the library. versions: those that the first stage was run with.
-    stages: when each stage wrote its results, and the digests of its keys and source.
-    timing: rows of study.timing; empty if the jobs left no benchmark files.
-    """
-
-    configuration: str
-    version: str
-    versions: str
-    stages: Table
-    timing: Sequence[dict] = ()
-
-
 def provenance(
     configuration: Mapping[str, Any],
     stages: Mapping[str, Mapping[str, Any]],
     timing: Sequence[dict] = (),
-) -> Provenance:
-    """Return the Provenance of a study.
+) -> dict[str, Any]:
+    """Return the origin of the numbers: the configuration as it ran, as YAML, the version of the
+    library, those that the first stage was run with, the Table of when each stage wrote its results
+    with the digests of its keys and source, and the timing.
 
     configuration: the checked configuration in plain values.
     stages: {stage: global attributes of one of its files}.
+    timing: rows of study.timing; empty if the jobs left no benchmark files.
     """
     text = yaml.safe_dump(dict(configuration), sort_keys=False, allow_unicode=True, width=96)
     columns = ("results of", "written (UTC)", "digest of configuration", "digest of source")
@@ -65,7 +49,13 @@ def provenance(
         for stage, values in stages.items()
     ]
     versions = next((str(row["versions"]) for row in stages.values() if "versions" in row), "")
-    return Provenance(text, vibroimpact.__version__, versions, Table(columns, rows), timing)
+    return {
+        "configuration": text,
+        "version": vibroimpact.__version__,
+        "versions": versions,
+        "stages": Table(columns, rows),
+        "timing": timing,
+    }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,7 +80,7 @@ class StudyContent:
     answers: Sequence[Answer]
     statistics: StudyStatistics
     limits: Mapping[str, float]
-    provenance: Provenance
+    provenance: Mapping[str, Any]
     unit: str
     load_words: tuple[str, str] = ("Load", "Load")
     load_factor: float = 1.0
@@ -118,7 +108,7 @@ def study_content(
     config: Any,
     answers: Sequence[Answer],
     statistics: StudyStatistics,
-    provenance: Provenance,
+    provenance: Mapping[str, Any],
     unmoved: Sequence[tuple[str, str]] = (),
     worn: Sequence[WearRow] = (),
     **more: Any,

@@ -4,8 +4,6 @@ The answer comes first, then spectra and shapes at any load, contact, wear, stre
 balance, every figure, and the configuration as it ran.
 """
 
-from __future__ import annotations
-
 import base64
 import io
 import json

@@ -3,8 +3,6 @@
 They are taken from the records of its cases.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The tables of a study's page, as texts in the units that a reader expects."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Sequence

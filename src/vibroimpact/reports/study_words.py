@@ -1,16 +1,14 @@
 """The runs and the results of a study, in sentences."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any
 
 from vibroimpact.integration.energy_limit import ENERGY_LIMIT
-from vibroimpact.study.method_agreement import AGREEMENT
+from vibroimpact.study.method_agreement import AGREEMENT, COMPARED
 from vibroimpact.study.reasons import agreement_sentence
 
-from .equivalent_answer import ALL_SUPPORTS, COMPARED, Answer, Value, places_of
+from .equivalent_answer import ALL_SUPPORTS, Answer, Value, places_of
 from .number_text import digits
 from .study_statistics import StudyStatistics
 
@@ -137,7 +135,7 @@ def _readings(config: Any, answers: Sequence[Answer], several: bool) -> list[str
     others = [
         row.k.methods["broadband"] / (0.5 * (row.k.methods["lscf"] + row.k.methods["ods"])) - 1.0
         for row in answers
-        if len(row.k.methods) == len(COMPARED["k"])
+        if len(row.k.methods) == len(COMPARED)
     ]
     if not others:
         return []

@@ -1,7 +1,5 @@
 """The words of a verdict: its sentence, why candidates were ruled out, and the next steps."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -64,27 +62,12 @@ def _tried(verdict):
 
 
 def _nothing_missing(verdict):
-    """Return the sentence of the verdict `none`, with the p-value of all differences if it was
-    computed.
-    """
-    chance = verdict.p_global_before
-    if chance is None:
-        return (
-            f"No effect is {'found' if verdict.not_run else 'missing'}: none {_tried(verdict)}"
-            " brings the model nearer to records that took no part than small errors of a right"
-            " model do."
-        )
-    told = f"(p-value of all differences: {probability_text(chance)})"
-    if chance > BEYOND_CHANCE:
-        return f"No effect is missing: the model explains the campaign within chance {told}."
+    """Return the sentence of the verdict `none`."""
     return (
-        f"No effect is found: the differences are beyond chance {told}, and no larger than those"
-        " between two right models of one structure, which may differ in undetermined quantities,"
-        " such as damping."
+        f"No effect is {'found' if verdict.not_run else 'missing'}: none {_tried(verdict)}"
+        " brings the model nearer to records that took no part than small errors of a right model"
+        " do."
     )
-
-
-BEYOND_CHANCE = 0.01
 
 
 def sets_in_words(sets: Sequence[Sequence[str]]) -> str:
@@ -132,30 +115,12 @@ def withdrawn_sentence(verdict: Verdict) -> str:
     return f"Tried and not offered: {tried}. It does not bring all records nearer{told}."
 
 
-def where_it_shows(verdict: Verdict) -> str:
-    """Return the meaning of the table of regions or the reason of its absence, or nothing."""
-    if verdict.regions:
-        return (
-            f"{len(verdict.regions)} bands differ by more than chance, the strongest first. z"
-            " counts standard deviations, with all that the verdict allows for."
-        )
-    if verdict.p_global_before is None:  # bands were not tested one by one
-        return ""
-    if verdict.verdict == "none":
-        return (
-            "Nowhere: the records together are within chance, and no band is singled out. The"
-            " largest differences of many are always of some size."
-        )
-    return "No band is beyond chance by itself: the difference is spread over many."
-
-
 def judgement(verdict: Verdict, row: dict, first: bool) -> str:
     """Return why a candidate was taken or ruled out, in words.
 
     row: of verdict.ranking in plain values; first: whether it is the first of these effects.
     """
-    ids, score, closed = sorted(row["ids"]), row["heldout_score"], row["closed_fraction"]
-    shown = _ids(verdict.shown_effects())
+    ids, shown = sorted(row["ids"]), _ids(verdict.shown_effects())
     if verdict.withdrawn and ids == _ids(verdict.withdrawn.effects) != []:
         return "makes records worse, or hardly better"
     if ids == shown and first:
@@ -164,17 +129,13 @@ def judgement(verdict: Verdict, row: dict, first: bool) -> str:
         return "the same at another place, which explains less"
     if ids in [sorted(row) for row in verdict.ambiguity_set]:
         return "not distinguished from it"
-    if row.get("probability") is not None and shown:
+    if shown:
         return "less probable, by the records that were fitted"
-    if score is None:
-        return "screened only: others came nearer"
-    if closed is not None and closed < 0.0:
-        return "makes the misfit grow"
-    if score <= 0.0:
+    if (row["heldout_score"] or 0.0) <= 0.0:
         return "gains nothing on records that it was not fitted to"
     if verdict.verdict == "none":
         return "gains no more than small errors of a right model do"
-    return "explains less" if shown else "leaves a difference beyond chance"
+    return "leaves a difference beyond chance"
 
 
 def _ids(effects: Iterable) -> list[str]:
@@ -236,10 +197,3 @@ def for_reading(row: Estimate) -> dict[str, Any]:
         "unit": unit,
         **{key: None if value is None else factor * value for key, value in values.items()},
     }
-
-
-def probability_text(value: float | None) -> str:
-    """Return a p-value as text."""
-    if value is None:
-        return "not computed"
-    return "below 0.001" if value < 1e-3 else f"{value:.2g}"

@@ -1,7 +1,5 @@
 """The wear life of a study in sentences and tables, as ranges over the laws of wear."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from itertools import groupby

@@ -1,7 +1,5 @@
 """Write the reduced model, its accuracy, and the contribution of each family of its basis."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from vibroimpact.config.stage_settings import StageSettings

@@ -1,7 +1,5 @@
 """Gather the estimates of all cases into the consistency tables."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from vibroimpact.config.stage_settings import StageSettings

@@ -1,7 +1,5 @@
 """Write the effects that a model lacks of a measured campaign, in one job."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +19,7 @@ def make(given: Any, made: Any, params: Any, threads: int) -> None:
         model_from(values),
         params.effort,
         threads,
-        verdict_origin(values, campaign, None),
+        verdict_origin(values, campaign),
         SoFar(params.so_far),
     )
     write_diagnosis(found, Path(made.verdict).parent)

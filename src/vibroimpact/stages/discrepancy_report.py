@@ -1,7 +1,5 @@
 """Draw the figures of a diagnosis and write its page."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Identify the equivalent supports of a measured tube: tables, figures and page."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -9,7 +7,6 @@ from typing import Any
 from vibroimpact.config.reading import check_config
 from vibroimpact.config.stage_keys import answer_digest
 from vibroimpact.equivalent_support.measured.equivalent_of import equivalent_of
-from vibroimpact.equivalent_support.measured.files import write_measured
 from vibroimpact.io.provenance import file_attributes
 from vibroimpact.io.records import write_text
 from vibroimpact.reports.captions import read_caption
@@ -29,7 +26,7 @@ def make(given: Any, made: Any, params: Any) -> None:
     values, folder = params.model, Path(made.page).parent
     config = check_config(values, "the model")
     found = equivalent_of(str(given.campaign), config)
-    write_measured(found, folder, file_attributes(values, params.library), answer_digest(values))
+    found.write(folder, file_attributes(values, params.library), answer_digest(values))
     plots = measured_figures(found, study_beside(config, params.study))
     files = save_plots(plots, folder / "figures")
     content = measured_content(found, params.name, values, flag_sentences(found.equivalent))

@@ -1,7 +1,5 @@
 """Draw the figures that compare the methods and check the simulations."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Draw the figures of the identifications, for the largest gap."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

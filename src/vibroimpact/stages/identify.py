@@ -1,7 +1,5 @@
 """Write the estimates of the cases of some loads, and the curves behind them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from vibroimpact.config.stage_settings import StageSettings

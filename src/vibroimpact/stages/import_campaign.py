@@ -1,14 +1,15 @@
 """Make a campaign of a folder of measurements, check it and draw it."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 from typing import Any
 
+from vibroimpact.campaign.checks.file_checks import check_campaign
+from vibroimpact.campaign.checks.stated import COLUMNS
 from vibroimpact.campaign.file import write_campaign
 from vibroimpact.campaign.importing.assemble import import_folder
-from vibroimpact.campaign.importing.report import write_report
+from vibroimpact.campaign.importing.report import import_text
+from vibroimpact.io.records import write_table, write_text
 from vibroimpact.io.signal_files.signals import ImportProblem
 from vibroimpact.reports.figures.drawing import save_plots
 from vibroimpact.reports.figures.quicklook import quicklook
@@ -23,5 +24,8 @@ def make(given: Any, made: Any, params: Any) -> None:
     except ImportProblem as problem:
         sys.exit(str(problem))
     write_campaign(campaign, made.campaign)
-    write_report(params.folder, campaign, rows, made)
+    checks = check_campaign(campaign)
+    write_table(rows, made.table)
+    write_table(checks, made.checks, COLUMNS)
+    write_text(import_text(params.folder, campaign, rows, checks), made.text)
     save_plots([quicklook(campaign)], Path(made.figure[0]).parent)

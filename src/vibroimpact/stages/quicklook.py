@@ -1,12 +1,11 @@
 """Check a campaign and draw it."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 from typing import Any
 
-from vibroimpact.campaign.checks.file_checks import COLUMNS, check_file
+from vibroimpact.campaign.checks.file_checks import check_file
+from vibroimpact.campaign.checks.stated import COLUMNS
 from vibroimpact.campaign.importing.report import checks_text
 from vibroimpact.io.records import write_table, write_text
 from vibroimpact.reports.figures.drawing import save_plots

@@ -1,7 +1,5 @@
 """Simulate the cases of some loads: their records and spectra, without time series."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from vibroimpact.config.stage_settings import StageSettings

@@ -1,7 +1,5 @@
 """Write the spectra of the cases of some loads from their time series."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from vibroimpact.config.stage_settings import StageSettings

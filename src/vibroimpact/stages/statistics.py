@@ -1,7 +1,5 @@
 """Gather the statistics of all cases into one table."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from vibroimpact.io.records import write_table

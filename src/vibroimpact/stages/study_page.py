@@ -1,7 +1,5 @@
 """Write the page of a study, and its wear life if it has one."""
 
-from __future__ import annotations
-
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Write the predictions of linear supports for the study: one k and c for all, and each its own."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from vibroimpact.config.stage_settings import StageSettings

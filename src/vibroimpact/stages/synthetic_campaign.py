@@ -1,7 +1,5 @@
 """Simulate the stand-in for a measured campaign and write it as a campaign file."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from vibroimpact.campaign.file import write_campaign

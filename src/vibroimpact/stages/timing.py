@@ -1,7 +1,5 @@
 """Sum the benchmark files and logs of a study into a table and a figure."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

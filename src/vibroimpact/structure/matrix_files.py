@@ -117,11 +117,6 @@ def _mat(path: Path, name: str, op4_set: str | None) -> Any:
     return arrays[_choose_letter(path, variables, name)]
 
 
-def _mtx(path: Path, name: str, op4_set: str | None) -> Any:
-    """Return the matrix of a MatrixMarket file. Raises ForeignFileError."""
-    return read_matrix_market(path, MOST_ROWS)
-
-
 def _choose_letter(path, names, name):
     """Return the name of the wanted matrix: mass, M or m. Raises MatrixFileError."""
     return _choose(path, names, [name, *LETTERS[name]], f"name the {name} matrix '{name}'")
@@ -192,4 +187,9 @@ def _choose(path: Path, names: list[str], fitting: list[str], remedy: str) -> st
     raise MatrixFileError(f"{path}: holds {', '.join(names) or 'no matrix'}: {remedy}")
 
 
-READERS = {".npz": _npz, ".mat": _mat, ".mtx": _mtx, ".op4": _op4}
+READERS = {
+    ".npz": _npz,
+    ".mat": _mat,
+    ".mtx": lambda path, *_: read_matrix_market(path, MOST_ROWS),
+    ".op4": _op4,
+}

@@ -42,7 +42,9 @@ def read_matrix_market(path: str | Path, most_rows: int) -> sparse.coo_array:
             f"{path}: holds {len(values)} values, its header says {entries}: write it anew"
         )
     if layout == "array":
-        row, column = _places_of_array(rows, symmetric)
+        column, row = np.indices((rows, rows)).reshape(2, -1)  # column after column
+        kept = row >= column if symmetric else slice(None)
+        row, column = row[kept], column[kept]
     else:
         row, column = _places(path, values, rows)
         _require_each_once(path, row, column, symmetric)
@@ -76,7 +78,9 @@ def _sizes(path: str | Path, file: TextIO, layout: str, symmetric: bool) -> tupl
     """Return (rows, columns, lines of values) from the line of sizes."""
     line = _first_line(file)
     words = line.split()
-    if len(words) != (2 if layout == "array" else 3) or not all(map(_is_size, words)):
+    if len(words) != (2 if layout == "array" else 3) or not all(
+        word.isascii() and word.isdecimal() and len(word) < 19 for word in words
+    ):
         raise ForeignFileError(f"{path}: the line of sizes is '{line.strip()[:40]}': {REMEDY}")
     rows, columns, *entries = map(int, words)
     if entries:
@@ -87,17 +91,6 @@ def _sizes(path: str | Path, file: TextIO, layout: str, symmetric: bool) -> tupl
 def _first_line(file: TextIO) -> str:
     """Return the next line that is not empty and no comment, "" at the end."""
     return next((line for line in file if line.strip() and not line.startswith("%")), "")
-
-
-def _is_size(word: str) -> bool:
-    return word.isascii() and word.isdecimal() and len(word) < 19
-
-
-def _places_of_array(rows: int, symmetric: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Return the rows and columns of the values of an array, column after column."""
-    column, row = np.indices((rows, rows)).reshape(2, -1)
-    kept = row >= column if symmetric else slice(None)
-    return row[kept], column[kept]
 
 
 def _places(path: str | Path, values: np.ndarray, rows: int) -> tuple[np.ndarray, np.ndarray]:

@@ -1,6 +1,7 @@
 """Structures that are not tubes: masses on springs, matrices, or measured modes; named points."""
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -20,10 +21,13 @@ GROUND = "ground"
 class PointStructure:
     """A linear structure known by its matrices and named points.
 
+    The dofs of one known by its measured modes are modal amplitudes in kg^1/2 m.
+
     mass, stiffness, damping: (dof, dof) sparse, SI.
-    dampers: list of ((dof,) row, coefficient in N s/m) that are not in `damping`; each acts between
+    dampers: ((dof,) row, coefficient in N s/m) that are not in `damping`; each acts between
         two dofs, or a dof and the ground.
     directions: {point: {axis: dof}}.
+    shapes: of measured modes, {point: (3, dof)} in kg^-1/2; None for a structure with a mass.
     contact: the ContactPoints of its supports.
     contact_points: per contact point, the names of its point and of the other point, None for the
         ground.
@@ -33,11 +37,12 @@ class PointStructure:
     mass: sparse.csr_array
     stiffness: sparse.csr_array
     damping: sparse.csr_array
-    dampers: list
     directions: dict
     contact: ContactPoints
     contact_points: list
-    condensed: Condensed | None = field(default=None, kw_only=True)
+    dampers: Sequence[tuple[np.ndarray, float]] = ()
+    condensed: Condensed | None = None
+    shapes: dict[str, np.ndarray] | None = None
 
     @property
     def dofs(self) -> int:
@@ -53,6 +58,8 @@ class PointStructure:
             raise ValueError(
                 f"point '{name}' is not among the structure's: {', '.join(sorted(self.directions))}"
             )
+        if self.shapes is not None:
+            return self.shapes[name]
         rows = np.zeros((3, self.dofs))
         for axis, dof in self.directions[name].items():
             if self.condensed is None:
@@ -79,8 +86,13 @@ class PointStructure:
     def inertia(self) -> np.ndarray:
         """Return (3, dof) in kg: minus the force on each dof per unit acceleration of the base.
 
-        The base accelerates along x, y, z.
+        The base accelerates along x, y, z. Raises ValueError for measured modes.
         """
+        if self.shapes is not None:
+            raise ValueError(
+                "structure.kind identified cannot be driven by its base: its mass is not known,"
+                " only its modes"
+            )
         whole = self.dofs if self.condensed is None else len(self.condensed.kept)
         rigid = np.zeros((whole, 3))
         for axes in self.directions.values():
@@ -91,36 +103,6 @@ class PointStructure:
         return (self.mass @ rigid).T
 
 
-@dataclass(frozen=True, eq=False)
-class IdentifiedStructure(PointStructure):
-    """A structure known by its measured modes; its dofs are modal amplitudes in kg^1/2 m.
-
-    rows: {point: (3, dof)} in kg^-1/2, the mode shapes at the points.
-    directions: {point: {axis: axis number}} of the measurement.
-    """
-
-    rows: dict
-
-    def point_rows(self, name: str) -> np.ndarray:
-        """Return (3, dof): the displacement of a named point per unit modal amplitude.
-
-        Raises ValueError for an unknown point.
-        """
-        if name not in self.rows:
-            raise ValueError(
-                f"point '{name}' is not among the structure's: {', '.join(sorted(self.rows))}"
-            )
-        return self.rows[name]
-
-    @property
-    def inertia(self) -> np.ndarray:
-        """Raise ValueError: the modes alone do not give the mass that moves with the base."""
-        raise ValueError(
-            "structure.kind identified cannot be driven by its base: its mass is not known, only"
-            " its modes"
-        )
-
-
 def build_point_structure(config: ConfigPart) -> PointStructure:
     """Return the PointStructure of a configuration: a chain, matrices or identified modes.
 
@@ -128,7 +110,6 @@ def build_point_structure(config: ConfigPart) -> PointStructure:
     MatrixFileError.
     """
     parts = PARTS[config.structure.kind](config.structure)
-    kind = IdentifiedStructure if config.structure.kind == "identified" else PointStructure
     directions = parts["directions"]
     for support in config.supports:
         for name in filter(None, (support.point, support.other_point)):
@@ -137,7 +118,7 @@ def build_point_structure(config: ConfigPart) -> PointStructure:
                     f"support {support.name}: point '{name}' is not among the structure's:"
                     f" {', '.join(sorted(directions))}"
                 )
-    return kind(
+    return PointStructure(
         **parts,
         contact=contacts_at_points(config.supports, config.points),
         contact_points=[(each.point, each.other_point) for each in config.supports],
@@ -196,30 +177,28 @@ def _matrices(structure: ConfigPart) -> dict[str, Any]:
         "mass": mass,
         "stiffness": stiffness,
         "damping": damping,
-        "dampers": [],
         "directions": directions,
     }
 
 
 def _identified(structure: ConfigPart) -> dict[str, Any]:
-    """Return the fields of an IdentifiedStructure of measured modes."""
+    """Return the fields of a PointStructure of measured modes."""
     modes = sorted(structure.modes, key=lambda mode: mode.frequency_Hz)
     omega = 2.0 * np.pi * np.array([mode.frequency_Hz for mode in modes])
     ratios = np.array([mode.damping_ratio for mode in modes])
-    rows: dict[str, np.ndarray] = {}
+    shapes: dict[str, np.ndarray] = {}
     directions: dict[str, dict[str, int]] = {}
     for number, mode in enumerate(modes):
         for name, axes in mode.shape.items():
             for axis, value in axes.items():
-                rows.setdefault(name, np.zeros((3, len(modes))))[AXES[axis], number] = value
+                shapes.setdefault(name, np.zeros((3, len(modes))))[AXES[axis], number] = value
                 directions.setdefault(name, {})[axis] = AXES[axis]
     return {
         "mass": sparse.diags_array(np.ones(len(modes)), format="csr"),
         "stiffness": sparse.diags_array(omega**2, format="csr"),
         "damping": sparse.diags_array(2.0 * ratios * omega, format="csr"),
-        "dampers": [],
         "directions": directions,
-        "rows": rows,
+        "shapes": shapes,
     }
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from scipy import sparse
@@ -77,7 +78,7 @@ class TubeStructure:
         The transpose gives the dof forces of a unit point force.
         """
         if arc_length not in self.rows:
-            element, xi = self._element_at(arc_length)
+            element, xi = self._elements_touching(arc_length)[-1]
             rows, _ = interpolation(self.beam, *self._element_geometry(element), xi)
             self.rows[arc_length] = self._to_free_dofs(element, rows)
         return self.rows[arc_length]
@@ -142,10 +143,6 @@ class TubeStructure:
         frequency = omega / (2.0 * np.pi)
         return np.sqrt(frequency) * viscous + frequency * two_phase
 
-    def _element_at(self, arc_length: float) -> tuple[int, float]:
-        """Return (element, xi) at an arc length in m; xi from 0 to 1, snapped to a near node."""
-        return self._elements_touching(arc_length)[-1]
-
     def _elements_touching(self, arc_length: float) -> list[tuple[int, float]]:
         """Return [(element, xi)]: the element that holds an arc length in m, or both at a node."""
         lengths = self.node_arc_length
@@ -197,35 +194,16 @@ def build_structure(
     line = build_centreline(config.structure)
     contact = place_contact_points(line, config.supports)
     if nodes is None:
-        nodes = _mesh(config, line, contact, halved)
+        # There are nodes at contact points and at ends of fluids.
+        owner = 2 * contact.support + contact.pair  # the two pairs of bars of a lattice are apart
+        groups = [contact.arc_length[owner == number] for number in np.unique(owner)]
+        stretches = fluid_stretches(config.structure, line)
+        groups += [np.array([place]) for each in stretches for place in (each.begin, each.end)]
+        nodes = mesh_arc_lengths(line, config.structure.mesh, groups)
+        nodes = halved_mesh(nodes) if halved else nodes
     key = (repr(config.structure), nodes.tobytes())
     built = STRUCTURES.get(key, lambda: _built(config, line, contact, nodes))
     return replace(built, contact=contact)
-
-
-def _mesh(config: ConfigPart, line: Centreline, contact: ContactPoints, halved: bool) -> np.ndarray:
-    """Return (node,) arc lengths in m: there are nodes at contact points and at ends of fluids."""
-    owner = 2 * contact.support + contact.pair  # the two pairs of bars of a lattice are apart
-    groups = [contact.arc_length[owner == number] for number in np.unique(owner)]
-    stretches = fluid_stretches(config.structure, line)
-    groups += [np.array([place]) for each in stretches for place in (each.begin, each.end)]
-    node_arc_length = mesh_arc_lengths(line, config.structure.mesh, groups)
-    return halved_mesh(node_arc_length) if halved else node_arc_length
-
-
-@dataclass(frozen=True, eq=False)
-class _Unheld:
-    """The tube before its ends are held: see TubeStructure, with matrices (node dof, node dof)."""
-
-    beam: Beam
-    nodes: np.ndarray
-    axes: np.ndarray
-    first_axis: np.ndarray | None
-    mass: sparse.csr_array
-    stiffness: sparse.csr_array
-    carried: sparse.csr_array
-    viscous: sparse.csr_array
-    two_phase: sparse.csr_array
 
 
 def _built(
@@ -235,34 +213,36 @@ def _built(
     structure = config.structure
     parts = {name: value for name, value in vars(structure).items() if name not in ENDS}
     key = (repr(parts), node_arc_length.tobytes())
-    tube = UNHELD.get(key, lambda: _unheld(structure, line, node_arc_length))
-    transformation, springs = _end_conditions(structure, line, len(tube.nodes))
-    rigid = np.tile(np.eye(3, DOF_PER_NODE), len(tube.nodes))
+    shared, matrices = UNHELD.get(key, lambda: _unheld(structure, line, node_arc_length))
+    transformation, springs = _end_conditions(structure, line, len(node_arc_length))
+    rigid = np.tile(np.eye(3, DOF_PER_NODE), len(node_arc_length))
 
     def held(matrix: sparse.csr_array) -> sparse.csr_array:
         return (transformation.T @ matrix @ transformation).tocsr()
 
     return TubeStructure(
         centreline=line,
-        beam=tube.beam,
         contact=contact,
         node_arc_length=node_arc_length,
-        nodes=tube.nodes,
-        axes=tube.axes,
-        first_axis=tube.first_axis,
         transformation=transformation,
         end_springs=springs @ transformation,
-        inertia=(rigid @ tube.mass) @ transformation,
-        carried_inertia=(rigid @ tube.carried) @ transformation,
-        mass=held(tube.mass),
-        stiffness=held(tube.stiffness + sparse.diags_array(springs, format="csr")),
-        viscous=held(tube.viscous),
-        two_phase=held(tube.two_phase),
+        inertia=(rigid @ matrices["mass"]) @ transformation,
+        carried_inertia=(rigid @ matrices["carried"]) @ transformation,
+        mass=held(matrices["mass"]),
+        stiffness=held(matrices["stiffness"] + sparse.diags_array(springs, format="csr")),
+        viscous=held(matrices["viscous"]),
+        two_phase=held(matrices["two_phase"]),
+        **shared,
     )
 
 
-def _unheld(structure: ConfigPart, line: Centreline, node_arc_length: np.ndarray) -> _Unheld:
-    """Return the tube on a mesh of nodes (node,) at arc lengths in m, before its ends are held."""
+def _unheld(
+    structure: ConfigPart, line: Centreline, node_arc_length: np.ndarray
+) -> tuple[dict[str, Any], dict[str, sparse.csr_array]]:
+    """Return (fields of TubeStructure, matrices (node dof, node dof)) before the ends are held.
+
+    node_arc_length: (node,) m, of the mesh.
+    """
     stretches = fluid_stretches(structure, line)
     nodes = np.array([line.position(place) for place in node_arc_length])
     middles = 0.5 * (node_arc_length[1:] + node_arc_length[:-1])
@@ -273,7 +253,8 @@ def _unheld(structure: ConfigPart, line: Centreline, node_arc_length: np.ndarray
     elements = [element_matrices(*each) for each in zip(beams, lengths, axes, strict=True)]
     stiffness, mass = (_assembled(matrices) for matrices in zip(*elements, strict=True))
     fluid = _fluid_matrices(beam, stretches, middles, (lengths, axes))
-    return _Unheld(beam, nodes, axes, first_axis, mass, stiffness, *fluid)
+    shared = {"beam": beam, "nodes": nodes, "axes": axes, "first_axis": first_axis}
+    return shared, {"mass": mass, "stiffness": stiffness, **fluid}
 
 
 def _first_axis(section: ConfigPart, line: Centreline) -> np.ndarray | None:
@@ -308,18 +289,18 @@ def _fluid_matrices(
     stretches: Sequence[FluidStretch],
     middles: np.ndarray,
     frames: tuple[np.ndarray, np.ndarray],
-) -> list[sparse.csr_array]:
-    """Return [carried, viscous, two_phase], each (node dof, node dof): the masses in kg that a
+) -> dict[str, sparse.csr_array]:
+    """Return {carried, viscous, two_phase}, each (node dof, node dof): the masses in kg that a
     fluid outside takes off if it moves with the ends, and its dampings in N s/m at 1 Hz. All act
     across the tube only.
     """
     size = DOF_PER_NODE * (len(middles) + 1)
-    carried, viscous, two_phase = (np.zeros((len(middles), 2)) for _ in range(3))
+    found = {name: np.zeros((len(middles), 2)) for name in ("carried", "viscous", "two_phase")}
     for each in stretches:
         inside = (each.begin <= middles) & (middles <= each.end)
-        carried[inside] += np.array(each.outside) + each.displaced
-        viscous[inside] += each.viscous
-        two_phase[inside] += each.two_phase
+        found["carried"][inside] += np.array(each.outside) + each.displaced
+        found["viscous"][inside] += each.viscous
+        found["two_phase"][inside] += each.two_phase
 
     def matrix(per_length: np.ndarray) -> sparse.csr_array:
         if not per_length.any():
@@ -327,7 +308,7 @@ def _fluid_matrices(
         beams = [transverse_only(beam, values) for values in per_length]
         return _assembled([element_matrices(*each)[1] for each in zip(beams, *frames, strict=True)])
 
-    return [matrix(values) for values in (carried, viscous, two_phase)]
+    return {name: matrix(values) for name, values in found.items()}
 
 
 def _assembled(matrices: Sequence[np.ndarray]) -> sparse.csr_array:

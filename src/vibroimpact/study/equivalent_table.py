@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from .method_agreement import COMPARED, Span, compared_spans, verdict
+from .method_agreement import COMPARED, Span, by_place, compared_spans, place_columns, verdict
 from .reasons import NOT_MOVED, bound_text, reason
 
 EQUIVALENT_COLUMNS = (
@@ -18,6 +18,7 @@ EQUIVALENT_COLUMNS = (
     *("secant_k_N_per_m", "secant_c_N_s_per_m", "agreement_k", "agreement_c"),
     *("reason_k", "reason_c", "flag", "k_bound", "contact_fraction"),
 )
+VALUES = {"k": "k_N_per_m", "c": "c_N_s_per_m"}  # columns
 # Of every table that answers: answer_digest of the configuration that it is of.
 DIGEST_COLUMN = "config_digest"
 NO_SPAN: Span = (np.nan, np.nan, np.nan)
@@ -36,10 +37,10 @@ def equivalent_rows(summary: list[dict], unreached: Sequence[tuple[str, str]] = 
 
     unreached: (group, direction) that the force does not move; they get rows without values.
     """
-    places: dict[tuple, dict[str, dict]] = {}
-    for row in summary:
-        place = (row["gap_m"], row["load_rms_N"], row["group"], row["direction"])
-        places.setdefault(place, {})[row["method"]] = row
+    places = {
+        place: {method: row for method, (row,) in methods.items()}
+        for place, methods in by_place(summary).items()
+    }
     several = len({place[2:] for place in places}) > 1
     seen = {
         place[2:]
@@ -97,12 +98,9 @@ def _row(place: tuple, methods: dict[str, dict], several: bool, shape_needed: bo
 
 def _empty(place: tuple, reason: str) -> dict:
     """Return a row without values."""
-    gap_m, load_rms_N, group, direction = place
-    row: dict = dict.fromkeys(EQUIVALENT_COLUMNS, np.nan)
-    row.update(gap_m=gap_m, load_rms_N=load_rms_N, load_over_gap=load_rms_N / gap_m)
-    row.update(group=group, direction=direction, reason_k=reason, reason_c=reason)
-    row.update(agreement_k="unresolved", agreement_c="unresolved", flag="")
-    return row
+    row: dict = dict.fromkeys(EQUIVALENT_COLUMNS, np.nan) | place_columns(place)
+    row.update(reason_k=reason, reason_c=reason, flag="")
+    return row | dict.fromkeys(("agreement_k", "agreement_c"), "unresolved")
 
 
 def recommended(spans: Mapping[str, Span], agreement: str) -> Span:

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from vibroimpact.excitation.force_channels import force_channels
-from vibroimpact.excitation.force_stream import normalised_force
+from vibroimpact.excitation.force_stream import ForceStream, force_channels
 from vibroimpact.integration.batch import Schedule, rest_state
 from vibroimpact.integration.contact_convergence import IntegrationError
 from vibroimpact.integration.every_step import Traces, integrate_every_step
@@ -71,9 +70,8 @@ def _normalised_forces(
     """Return (sample, force_channel) the force of a seed per newton of the load."""
 
     def values(excitation: Any, generator: np.random.Generator) -> np.ndarray:
-        return normalised_force(
-            excitation, generator, steps + 12, rate, slice(0, steps + 1), first_time_s=0.0
-        )
+        stream = ForceStream(excitation, generator, steps + 12, rate, slice(0, steps + 1))
+        return stream.values(0, steps + 12)
 
     return np.stack(force_channels(config, seed, channels, values), axis=-1)
 

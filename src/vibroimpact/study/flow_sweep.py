@@ -17,6 +17,7 @@ import xarray as xr
 from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.schema import Config
 from vibroimpact.excitation.fluid_elastic import FluidLaws, fluid_force
+from vibroimpact.excitation.turbulence import load_of_spectrum
 from vibroimpact.flow.limit_cycle import ModelInFlow
 from vibroimpact.flow.stability import NoFlow
 from vibroimpact.geometry.sections import outer_width
@@ -27,7 +28,6 @@ from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.integration.preload import seated
 
 from .cases import Case, load_values
-from .flow_turbulence import at_velocity
 from .in_process import reduced_model
 from .simulation import drive_of_lanes, imperfection, record_dataset, schedule_of, seed_forces
 
@@ -209,6 +209,22 @@ def _lanes(config: Config) -> list[tuple[float, bool]]:
     velocities = sorted(flow.velocity_m_per_s)
     alone = [0.0] if flow.turbulence is None else velocities
     return [(own, False) for own in alone] + [(own, True) for own in velocities]
+
+
+def at_velocity(config: Config, velocity: float) -> tuple[Config, float]:
+    """Return (configuration with the spectrum of the force at a velocity in m/s, force RMS there
+    over the load of the grid).
+
+    Both are those of the grid if flow.turbulence is null.
+    """
+    rule, force = cast(Any, config.flow).turbulence, cast(Any, config.excitation)
+    if rule is None:
+        return config, 1.0
+    if rule.kind == "power":
+        return config, float((velocity / rule.at_m_per_s) ** rule.exponent)
+    moved = changed_config(config, {"excitation.spectrum.velocity_m_per_s": velocity})
+    loads = [load_of_spectrum(config.structure, own) for own in (moved.excitation, force)]
+    return moved, loads[0] / loads[1]
 
 
 class _LineSquares:

@@ -39,13 +39,9 @@ def _stiffness_range(rows: Iterable[dict]) -> str:
     )
     if not curve:
         return "no load at which k is resolved"
-    texts = [f"{_short(k)} N/m at {load:g} N" for load, k in (curve[0], curve[-1])]
+    ends = [(load, f"{k:.2g}".replace("e+0", "e").replace("e+", "e")) for load, k in curve]
+    texts = [f"{k} N/m at {load:g} N" for load, k in (ends[0], ends[-1])]
     return ("k from " if len(curve) > 1 else "k = ") + " to ".join(dict.fromkeys(texts))
-
-
-def _short(value: float) -> str:
-    """Return a value with two digits, as in 1.2e4."""
-    return f"{value:.2g}".replace("e+0", "e").replace("e+", "e")
 
 
 def flag_sentences(rows: Sequence[dict], table: str = "equivalent.csv") -> list[str]:

@@ -14,7 +14,7 @@ from vibroimpact.identify.estimate import METHODS
 # One of each kind of method. The pole and the shape both read the main peak, the broadband PSD the
 # whole band.
 COMPARED = ("lscf", "ods", "broadband")
-COMPARED_DAMPING = ("lscf", "broadband")  # a shape carries no damping
+COMPARED_OF = {"k": COMPARED, "c": ("lscf", "broadband")}  # a shape carries no damping
 FEWEST = {"k": 2, "c": 1}  # methods that must resolve a value; a single stiffness is not confirmed
 # Largest relative distance of a stiffness from the median of three; of two values from each other,
 # over the smaller.
@@ -62,7 +62,7 @@ def summary_rows(rows: list[dict]) -> list[dict]:
     k_bound: N/m, the upper bound of k if it does not differ from 0, the largest over seeds.
     contact_fraction: median over seeds. caution: further remarks on the cases.
     """
-    places = _by_place(rows)
+    places = by_place(rows)
     several = len({place[2:] for place in places}) > 1
     summary: list[dict] = []
     for place, methods in places.items():
@@ -73,25 +73,19 @@ def summary_rows(rows: list[dict]) -> list[dict]:
         centre = float(np.median(medians)) if whole else np.nan
         for name, row in found.items():
             row["ratio"] = row["k_median"] / centre
-            if name in COMPARED:
-                row["verdict_k"] = verdict(stiffness, "k")
-            if name in COMPARED_DAMPING:
-                row["verdict_c"] = verdict(damping, "c")
+            for quantity, spans in (("k", stiffness), ("c", damping)):
+                if name in COMPARED_OF[quantity]:
+                    row[f"verdict_{quantity}"] = verdict(spans, quantity)
         summary += found.values()
     return summary
 
 
 def _method_row(place: tuple, method: str, cases: list[dict]) -> dict:
     """Return the row of a method without its verdicts."""
-    gap_m, load_rms_N, group, direction = place
     k, c = _span(cases, "k_N_per_m"), _span(cases, "c_N_s_per_m")
     touching = [row["contact_fraction"] for row in cases]
     return {
-        "gap_m": gap_m,
-        "load_rms_N": load_rms_N,
-        "load_over_gap": load_rms_N / gap_m,
-        "group": group,
-        "direction": direction,
+        **place_columns(place),
         "method": method,
         **dict(zip(("k_median", "k_low", "k_high"), k, strict=True)),
         **dict(zip(("c_median", "c_low", "c_high"), c, strict=True)),
@@ -117,7 +111,7 @@ def compared_spans(methods: Mapping[str, dict], quantity: str, several: bool) ->
         name: tuple(
             float(methods[name][f"{quantity}_{part}"]) for part in ("median", "low", "high")
         )
-        for name in (COMPARED if quantity == "k" else COMPARED_DAMPING)
+        for name in COMPARED_OF[quantity]
         if name in methods
     }
     if several and np.isnan(methods.get("broadband", {}).get("k_median", np.nan)):
@@ -131,7 +125,6 @@ def verdict(spans: Mapping[str, Span], quantity: str) -> str:
     Stiffnesses agree within 25 % of the median of three; two stiffnesses or dampings when they
     differ by at most 25 % of the smaller.
     """
-    compared = COMPARED if quantity == "k" else COMPARED_DAMPING
     found = np.array([span for span in spans.values() if np.isfinite(span[0])]).reshape(-1, 3)
     if len(found) < FEWEST[quantity]:
         return "unresolved"
@@ -141,7 +134,7 @@ def verdict(spans: Mapping[str, Span], quantity: str) -> str:
     else:
         apart = len(found) > 1 and _distance(*medians) > AGREEMENT
     if not apart:
-        return "agree" if len(found) == len(compared) else "partial"
+        return "agree" if len(found) == len(COMPARED_OF[quantity]) else "partial"
     disputed = any(
         _distance(one[0], other[0]) > AGREEMENT and max(one[1], other[1]) > min(one[2], other[2])
         for one, other in combinations(found, 2)
@@ -155,12 +148,23 @@ def _distance(one: float, other: float) -> float:
     return abs(one - other) / smaller if smaller > 0.0 else np.inf
 
 
-def _by_place(rows: list[dict]) -> dict[tuple, dict[str, list[dict]]]:
-    """Return {(gap, load, group, direction): {method: rows of the seeds}}."""
+def place_of(row: Mapping) -> tuple[float, float, str, str]:
+    """Return (gap in m, load in N, group, direction) of a row of any table."""
+    return row["gap_m"], row["load_rms_N"], row["group"], row["direction"]
+
+
+def place_columns(place: tuple) -> dict:
+    """Return the columns of a table that state a place."""
+    gap_m, load_rms_N, group, direction = place
+    over = {"gap_m": gap_m, "load_rms_N": load_rms_N, "load_over_gap": load_rms_N / gap_m}
+    return {**over, "group": group, "direction": direction}
+
+
+def by_place(rows: Iterable[dict]) -> dict[tuple, dict[str, list[dict]]]:
+    """Return {place: {method: its rows}}."""
     places: dict[tuple, dict[str, list[dict]]] = {}
     for row in rows:
-        place = (row["gap_m"], row["load_rms_N"], row["group"], row["direction"])
-        places.setdefault(place, {}).setdefault(row["method"], []).append(row)
+        places.setdefault(place_of(row), {}).setdefault(row["method"], []).append(row)
     return places
 
 
@@ -187,7 +191,7 @@ def _bound(cases: list[dict], k: Span) -> float:
 def _reason(cases: list[dict], span: dict[str, tuple]) -> str:
     """Return why k or c of a method is not resolved, or weak, from the reasons of its seeds."""
     if np.isfinite(span["k"][0]):
-        if np.isfinite(span["c"][0]) or cases[0]["method"] not in COMPARED_DAMPING:
+        if np.isfinite(span["c"][0]) or cases[0]["method"] not in COMPARED_OF["c"]:
             return _weak(cases)
         column = "c_N_s_per_m"
     else:

@@ -54,7 +54,12 @@ def reason(
     if agreement == "spread":
         return f"the methods are more than 25 % apart: {values}"
     silent = [name for name in spans if name not in found]
-    why = f"{method_name(silent[0])}: {_silence(methods[silent[0]])}" if silent else ""
+    why = ""
+    if silent:
+        row = methods[silent[0]]
+        none = np.isfinite(row.get("k_bound", np.nan))
+        told = "does not tell k from none" if none else row.get("reason") or "no value"
+        why = f"{method_name(silent[0])}: {told}"
     if agreement == "partial":
         verb = "resolves" if len(found) == 1 else "resolve"
         every = COUNTS[len(spans)]
@@ -70,13 +75,6 @@ def _weakness(methods: Mapping[str, dict], spans: Mapping[str, Span]) -> str:
     if 2 * len(weak) <= len(spans):
         return ""
     return f"{len(weak)} of {len(spans)} methods are {methods[weak[0]]['reason']}"
-
-
-def _silence(row: dict) -> str:
-    """Return why a method has no value."""
-    if np.isfinite(row.get("k_bound", np.nan)):
-        return "does not tell k from none"
-    return row.get("reason") or "no value"
 
 
 def agreement_sentence(

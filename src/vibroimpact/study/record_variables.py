@@ -92,11 +92,11 @@ DECLARED: dict[tuple[str, str], dict[str, tuple[str, str]]] = {
     },
     ("run_term", "f8"): {"run_energy": ("J", "energies of the whole run")},
 }
-# name: (dimensions, dtype, units, long name)
-VARIABLES: dict[str, tuple[tuple[str, ...], str, str, str]] = {
-    name: (tuple(dims.split()), dtype, *about)
+# name: (dimensions, dtype, attributes)
+VARIABLES: dict[str, tuple[tuple[str, ...], str, dict[str, str]]] = {
+    name: (tuple(dims.split()), dtype, {"units": units, "long_name": long_name})
     for (dims, dtype), group in DECLARED.items()
-    for name, about in group.items()
+    for name, (units, long_name) in group.items()
 }
 # name: (dimensions, units, None for texts, long name)
 COORDINATES: dict[str, tuple[tuple, str | None, str]] = {
@@ -113,14 +113,6 @@ COORDINATES: dict[str, tuple[tuple, str | None, str]] = {
 }
 
 
-def _coordinate(name: str, values: Any) -> tuple:
-    """Return (dimensions, values, attributes) of a declared coordinate."""
-    dims, units, long_name = COORDINATES[name]
-    if units is None:  # an empty list of names is still one of texts
-        return dims, np.array(values, dtype=str), {"long_name": long_name}
-    return dims, values, {"units": units, "long_name": long_name}
-
-
 def describe(values: dict, coordinates: dict, attributes: dict) -> xr.Dataset:
     """Return a dataset of declared variables, with their dimensions, units and names.
 
@@ -128,9 +120,14 @@ def describe(values: dict, coordinates: dict, attributes: dict) -> xr.Dataset:
     """
     data = {}
     for name, value in values.items():
-        dims, dtype, units, long_name = VARIABLES[name]
-        data[name] = (dims, np.asarray(value, dtype), {"units": units, "long_name": long_name})
-    coords = {name: _coordinate(name, value) for name, value in coordinates.items()}
+        dims, dtype, about = VARIABLES[name]
+        data[name] = (dims, np.asarray(value, dtype), about)
+    coords = {}
+    for name, value in coordinates.items():
+        where, units, long_name = COORDINATES[name]
+        own = ({} if units is None else {"units": units}) | {"long_name": long_name}
+        # an empty list of names is still one of texts
+        coords[name] = (where, np.array(value, dtype=str) if units is None else value, own)
     return xr.Dataset(data, coords, attributes)
 
 

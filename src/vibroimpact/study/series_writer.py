@@ -5,18 +5,16 @@ Memory holds a piece of them, whatever their duration.
 
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from vibroimpact.integration.batch import Schedule
-from vibroimpact.io.records import record_file, write_record
+from vibroimpact.io.records import record_file
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .cases import Case
-from .record_variables import VARIABLES, describe, split_record
+from .record_variables import VARIABLES, describe
 from .simulation import case_attributes, sample_times
 
 PIECE = 8192  # samples written at a time: many small writes cost more than the samples
@@ -43,10 +41,7 @@ def series_writer(config: Any, model: ModalModel, paths: dict, attributes: dict)
             "support": list(model.support_names),
         }
         head = describe({}, coordinates, {})
-        parts = {}
-        for name in SERIES:
-            dims, dtype, units, long_name = VARIABLES[name]
-            parts[name] = (dims, dtype, {"units": units, "long_name": long_name})
+        parts = {name: VARIABLES[name] for name in SERIES}
         waiting: list[dict[str, np.ndarray]] = []
         with ExitStack() as open_files:
             puts = []
@@ -70,17 +65,3 @@ def series_writer(config: Any, model: ModalModel, paths: dict, attributes: dict)
             yield put
 
     return writer
-
-
-def write_record_parts(
-    record: xr.Dataset, path: str | Path, series_path: str | Path | None = None
-) -> None:
-    """Write the statistics of a record to one file and its time series to another.
-
-    series_path: needed only if the record holds time series itself, see every_step_records.
-    """
-    statistics, series = split_record(record)
-    write_record(statistics, path)
-    if series.data_vars:
-        assert series_path is not None, "a record with time series needs a path for them"
-        write_record(series, series_path)

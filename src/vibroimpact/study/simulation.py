@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from vibroimpact.excitation.force_channels import force_channels
-from vibroimpact.excitation.force_stream import ForceStream
+from vibroimpact.excitation.force_stream import ForceStream, force_channels
 from vibroimpact.excitation.random_streams import random_generator
 from vibroimpact.integration.batch import (
     ENERGY_TERMS,
@@ -67,9 +66,9 @@ def simulate_cases(
         }
     for first in range(0, len(cases), LANES):
         batch = cases[first : first + LANES]
-        lanes = _integrated(
-            config, model, schedule, batch, _drive(batch, forces, stopwatch), writer
-        )
+        drive = drive_of_lanes([(forces[case.seed], case.load_rms_N) for case in batch])
+        timed = partial(stopwatch.time, "force", drive)
+        lanes = _integrated(config, model, schedule, batch, timed, writer)
         stopwatch.add(lanes.stopwatch)
         for lane, case in enumerate(batch):
             yield case, record_dataset(config, model, schedule, lanes, lane, case)
@@ -136,14 +135,6 @@ def imperfection(config: Any, model: ModalModel, case: Case) -> np.ndarray:
         -1.0, 1.0, (model.support_of_point.size, 2)
     )
     return draw * (config.integration.imperfection * case.gap_m)
-
-
-def _drive(batch, forces, stopwatch):
-    """Return the Drive of a batch: the forces of each case's seed, {seed: its channels}, times its
-    load.
-    """
-    drive = drive_of_lanes([(forces[case.seed], case.load_rms_N) for case in batch])
-    return partial(stopwatch.time, "force", drive)
 
 
 def drive_of_lanes(lanes: Sequence[tuple[list[ForceStream], float]]) -> Callable:

@@ -38,11 +38,6 @@ def job_of(benchmark: str, log: str) -> dict:
     }
 
 
-def rule_of(path: str | Path) -> str:
-    """Return the rule of a benchmark file: its name without the load."""
-    return Path(path).stem.split("_load_")[0].split("_from_")[0]
-
-
 def timing_rows(jobs: Iterable[tuple[str, dict]]) -> list[dict]:
     """Return rows {rule, part, jobs, wall_s, cpu_s, share, max_rss_MB} of (rule, job) pairs.
 
@@ -84,12 +79,11 @@ def study_timing(benchmarks: Iterable[str | Path], logs: Iterable[str | Path]) -
 
     Raises RecordError when a file can not be read.
     """
-    return timing_rows(
-        [
-            (rule_of(path), job_of(read_text(path), read_text(log)))
-            for path, log in zip(benchmarks, logs, strict=True)
-        ]
-    )
+    jobs = []
+    for path, log in zip(benchmarks, logs, strict=True):
+        rule = Path(path).stem.split("_load_")[0].split("_from_")[0]  # without the load
+        jobs.append((rule, job_of(read_text(path), read_text(log))))
+    return timing_rows(jobs)
 
 
 def timing_so_far(benchmarks: Iterable[str | Path], logs: Iterable[str | Path]) -> list[dict]:

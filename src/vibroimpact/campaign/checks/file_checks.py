@@ -34,7 +34,6 @@ from . import linear_record, signal_faults, stated
 from .between_records import contradictions, copies, spike
 from .stated import check_row, warning
 
-COLUMNS = ("check", "level", "record", "channel", "message")
 NOT_CHECKED = "not checked"
 BESIDE = {"base motion": "load_rms"}  # a check of some campaigns alone, and the one that it follows
 # A warning of these excludes its signal from every comparison.
@@ -204,12 +203,11 @@ def _faults_of(signal, period, measured, record, channel, what):
     def fault(check, message):
         return warning(check, message, record, channel)
 
-    holes = signal_faults.missing_samples(signal)
-    if signal.size == 0 or holes:
-        count, first = holes or (0, 0)
+    holes = np.flatnonzero(~np.isfinite(signal))
+    if signal.size == 0 or holes.size:
         message = (
-            f"{channel} misses {count} of {signal.size} samples (no number, or beyond"
-            f" {LARGEST:g}), the first at {first / measured.rate:.3f} s, in record {record}."
+            f"{channel} misses {holes.size} of {signal.size} samples (no number, or beyond"
+            f" {LARGEST:g}), the first at {holes[0] / measured.rate:.3f} s, in record {record}."
             f" {what}: repair the gap or shorten valid_samples."
             if signal.size
             else f"Record {record} has no valid sample."
@@ -374,11 +372,12 @@ def _stationarity(measured, usable, spectra):
         for channel, signal in ((own[0], own[1]) for own in signals if own[2]):
             trend = signal_faults.level_trend(signal, measured.rate, band, measured.starts_at_rest)
             made = made or trend is not None
-            if signal_faults.is_drifting(trend):
+            change, t = trend or (0.0, 0.0)
+            if abs(t) > signal_faults.TREND_T and abs(change) > signal_faults.TREND_DB:
                 yield warning(
                     "stationarity",
-                    f"The level of {channel} {'rises' if trend[0] > 0 else 'falls'} by"
-                    f" {abs(trend[0]):.1f} dB over record {name} (t = {trend[1]:.1f}).",
+                    f"The level of {channel} {'rises' if change > 0 else 'falls'} by"
+                    f" {abs(change):.1f} dB over record {name} (t = {t:.1f}).",
                     name,
                     channel,
                 )

@@ -65,15 +65,6 @@ def _bands(frequency: np.ndarray) -> np.ndarray:
     return place == np.arange(BANDS)[:, None]
 
 
-def coherent_bands(frequency: np.ndarray, coherence: np.ndarray) -> np.ndarray:
-    """Return (channel, band) bool: whether the mean coherence (channel, line) of a band is at least
-    LEAST_COHERENCE. The response in the others is noise, and more than any linear model has.
-    """
-    chosen = _bands(frequency)
-    mean = coherence @ chosen.T / np.maximum(chosen.sum(axis=1), 1)
-    return mean >= LEAST_COHERENCE
-
-
 def misfits_dB(measured: np.ndarray, simulated: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return (misfit, offset), each (channel, channel) in dB, of band levels (channel, band).
 
@@ -107,9 +98,8 @@ def compare_with_model(
     channels = coherent.tolist()
     weights = np.maximum(spectra.coherence, 1e-3)[coherent]
     h1, model = spectra.h1[coherent], simulated[coherent]
-    seen = coherent_bands(spectra.frequency, spectra.coherence[coherent])
     misfit, offset = misfits_dB(
-        np.where(seen, band_levels_dB(spectra.frequency, h1, weights), np.nan),
+        np.where(_seen(spectra)[coherent], band_levels_dB(spectra.frequency, h1, weights), np.nan),
         band_levels_dB(spectra.frequency, model, weights),
     )
     rows: list[dict] = []
@@ -144,6 +134,12 @@ def compare_with_model(
                 )
             )
     return _merge_gains(rows)
+
+
+def _seen(spectra):
+    """Return (channel, band) bool: which bands show more than noise."""
+    chosen = _bands(spectra.frequency)
+    return spectra.coherence @ chosen.T / np.maximum(chosen.sum(axis=1), 1) >= LEAST_COHERENCE
 
 
 def _swap_rows(pair, record, after_dB, before_dB):

@@ -23,15 +23,6 @@ TREND_T, TREND_DB = 5.0, 1.5  # least |t| and change; |t| of 140 stationary sign
 START_UP_SHARE, START_UP_S = 0.1, 5.0  # start from rest: share of the record, at most so many s
 
 
-def missing_samples(signal: np.ndarray) -> tuple[int, int] | None:
-    """Return (number of samples that are not finite, index of the first) of a signal (time,).
-
-    None if all are finite.
-    """
-    holes = np.flatnonzero(~np.isfinite(signal))
-    return (holes.size, int(holes[0])) if holes.size else None
-
-
 def clipped_share(signal: np.ndarray) -> float | None:
     """Return the share of samples (0 to 1) at a flat top of a signal (time,), or None.
 
@@ -95,9 +86,10 @@ def drop_out(signal: np.ndarray, rate: float, starts_at_rest: bool) -> tuple[flo
     counted = ~((starts == 0) & starts_at_rest)
     if counted.any():
         longest = int(np.argmax(np.where(counted, lengths, 0)))
-        if lengths[longest] > max(DROP_OUT_SAMPLES, DROP_OUT_S * rate) and not _usual(
-            lengths, longest
-        ):
+        others = np.sort(np.delete(lengths, longest))
+        # equal values are usual if the resolution of the converter is coarse
+        usual = others.size > 10 and lengths[longest] < 5 * others[int(0.99 * others.size)]
+        if lengths[longest] > max(DROP_OUT_SAMPLES, DROP_OUT_S * rate) and not usual:
             return starts[longest] / rate, lengths[longest] / rate
     size = max(int(QUIET_S * rate), 16)
     blocks = signal[: signal.size // size * size].reshape(-1, size)
@@ -117,15 +109,6 @@ def drop_out(signal: np.ndarray, rate: float, starts_at_rest: bool) -> tuple[flo
     if not abrupt:
         return None
     return abrupt[0][0] * size / rate, max(length for _, length in abrupt) * size / rate
-
-
-def _usual(lengths: np.ndarray, longest: int) -> bool:
-    """Whether runs of equal values are usual in the signal.
-
-    The longest one then is due to the resolution of the converter, not a drop-out.
-    """
-    others = np.sort(np.delete(lengths, longest))
-    return others.size > 10 and lengths[longest] < 5 * others[int(0.99 * others.size)]
 
 
 def level_trend(
@@ -179,8 +162,3 @@ def level_trend(
         rest @ rest / (count - 2) / (place @ place) * (1.0 + neighbours) / (1.0 - neighbours)
     )
     return float(change), float(change / max(error, 1e-300))
-
-
-def is_drifting(trend: tuple[float, float] | None) -> bool:
-    """Whether the change of a level_trend is significant and large enough to matter."""
-    return trend is not None and abs(trend[1]) > TREND_T and abs(trend[0]) > TREND_DB

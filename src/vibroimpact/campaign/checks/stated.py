@@ -16,6 +16,7 @@ WIDE_GAP_M, FAR_M = 0.05, 100.0  # larger ones may be in millimetres
 FILTERS = ("fir80", "none")  # that of simulations, and none
 OFFSET = 0.2  # of the RMS about the mean: a larger constant part of a force is reported
 NO_PERIOD = 0.5  # of the force: a larger difference between two periods is that of another force
+COLUMNS = ("check", "level", "record", "channel", "message")
 Rows = Iterator[dict]
 
 
@@ -23,13 +24,7 @@ def check_row(
     check: str, level: str, message: str, record: str | None = None, channel: str | None = None
 ) -> dict:
     """Return a row of a check."""
-    return {
-        "check": check,
-        "level": level,
-        "record": record,
-        "channel": channel,
-        "message": message,
-    }
+    return dict(zip(COLUMNS, (check, level, record, channel, message), strict=True))
 
 
 def warning(

@@ -1,6 +1,5 @@
 """Frequency response functions of Universal File Format dataset 58, function type 4."""
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -10,39 +9,21 @@ from vibroimpact.campaign.force_kinds import FORCE
 from vibroimpact.io.signal_files.signals import ImportProblem
 from vibroimpact.io.units import TIME_DERIVATIVES, UnitError, si_factor
 
-from .uff import FORCE_TYPES, KIND_OF_TYPE, node_name, nodes_of, read_datasets, unit_of
+from .uff import FORCE_TYPES, KIND_OF_TYPE, node_name, read_functions, unit_of
 
 FRF = 4  # function type
 
 
-@dataclass(frozen=True)
-class FrequencyResponses:
-    """Responses to one force.
-
-    frequency (line,): Hz, above 0.
-    h1 (channel, line): complex, SI per N.
-    channels: the Channel of each response. drive: that of the force.
-    """
-
-    frequency: np.ndarray
-    h1: np.ndarray
-    channels: list[Channel]
-    drive: Channel
-
-
-def read_frfs(path: str | Path) -> FrequencyResponses:
-    """Return the FrequencyResponses of a universal file.
+def read_frfs(path: str | Path) -> tuple[np.ndarray, np.ndarray, list[Channel], Channel]:
+    """Return (frequency (line,) in Hz above 0, complex responses (channel, line) in SI per N, the
+    Channel of each response, that of the one force) of a universal file.
 
     Of a hammer that roved while one accelerometer stayed, response and force change places: a
     linear structure responds alike (J. C. Maxwell 1864). Raises ImportProblem for a file without
     frequency responses of one force or one response, and for one without their places.
     """
-    types, sets = read_datasets(path)
-    units = next((data for index, data in sets.items() if types[index] == 164), None)
-    nodes = nodes_of([sets[index] for index in sets if types[index] in (15, 2411)], units, path)
-    functions = [
-        data for index, data in sets.items() if types[index] == 58 and data["func_type"] == FRF
-    ]
+    _, functions, nodes, units = read_functions(path)
+    functions = [data for data in functions if data["func_type"] == FRF]
     if not functions:
         raise ImportProblem(f"{path}: holds no frequency response (dataset 58, function type 4)")
     moving, fixed = _ends(functions, path)
@@ -61,7 +42,7 @@ def read_frfs(path: str | Path) -> FrequencyResponses:
         raise ImportProblem(f"{path}: the frequency responses have different lines: export again")
     h1 = np.array([each[1] for each in lines])
     kept = (frequency > 0.0) & np.isfinite(h1).all(axis=0)
-    return FrequencyResponses(frequency[kept], h1[:, kept], channels, drive)
+    return frequency[kept], h1[:, kept], channels, drive
 
 
 def _ends(functions, path):

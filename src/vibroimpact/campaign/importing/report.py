@@ -1,13 +1,10 @@
 """The report of an import, and the checks of a campaign, as plain text."""
 
 from pathlib import Path
-from typing import Any
 
 import xarray as xr
 
-from vibroimpact.campaign.checks.file_checks import COLUMNS, check_campaign
 from vibroimpact.campaign.file import with_no_force
-from vibroimpact.io.records import write_table, write_text
 
 SHOWN = {
     "sensor": "sensor",
@@ -23,14 +20,6 @@ SHOWN = {
     "peak_SI": "peak (SI)",
 }
 SIGNS = {"pass": "ok    ", "warn": "WARN  ", "refuse": "REFUSE", "not checked": "-     "}
-
-
-def write_report(folder: str | Path, campaign: xr.Dataset, rows: list[dict], paths: Any) -> None:
-    """Check the campaign of a folder and write paths.table, paths.checks (CSV) and paths.text."""
-    checks = check_campaign(campaign)
-    write_table(rows, paths.table)
-    write_table(checks, paths.checks, COLUMNS)
-    write_text(import_text(folder, campaign, rows, checks), paths.text)
 
 
 def import_text(

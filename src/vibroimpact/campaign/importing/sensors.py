@@ -78,7 +78,9 @@ def _resolved(sensor: Sensor, role: str, measured: Measured) -> ResolvedSensor |
         return None
     first = signals[0]
     place = f"{measured.folder / NAME}, {sensor.name}"
-    kind = _kind(sensor, first, role)
+    kind = sensor.kind or first.kind
+    if role == "force" and kind not in (BASE, "acceleration"):
+        kind = FORCE
     if not kind:
         problems.append(
             f"{place}: the kind is not known: add kind: acceleration, velocity, displacement,"
@@ -109,12 +111,6 @@ def _resolved(sensor: Sensor, role: str, measured: Measured) -> ResolvedSensor |
         unit_from = f"{NAME}; {first.unit_from} says {first.unit}"
     channel = Channel(sensor.name, tuple(point), tuple(direction), unit, kind)
     return ResolvedSensor(channel, unit_from, signals, role)
-
-
-def _kind(sensor: Sensor, signal: Signal, role: str) -> str:
-    """Return the kind of a sensor, that of its signal if none is stated, or ""."""
-    kind = sensor.kind or signal.kind
-    return FORCE if role == "force" and kind not in (BASE, "acceleration") else kind
 
 
 def _without_offset(signal: Signal) -> Signal:

@@ -40,16 +40,7 @@ def read_uff(path: str | Path) -> list[Signal]:
     quantity: "12:+y force". Its aliases are node:axis, the entity's name and the first
     identification line. Raises ImportProblem when the file can not be read or has no time record.
     """
-    types, sets = read_datasets(path)
-    units = next((data for index, data in sets.items() if types[index] == 164), None)
-    if units is not None and not all(0.0 < units[key] < np.inf for key in ("length", "force")):
-        raise ImportProblem(
-            f"{path}: dataset 164: {units['length']:g} and {units['force']:g} are no units of"
-            f" length and force per SI unit: {AGAIN}"
-        )
-    tables = [data for index, data in sets.items() if types[index] in (15, 2411)]
-    nodes = nodes_of(tables, units, path)
-    functions = [data for index, data in sets.items() if types[index] == 58]
+    types, functions, nodes, units = read_functions(path)
     signals = [_signal(data, path, nodes, units) for data in functions if _is_time_record(data)]
     if not signals:
         found = sorted({f"{data['func_type']} ({data.get('id1', '')})" for data in functions})
@@ -87,7 +78,25 @@ def _with_own_names(signals):
     return signals
 
 
-def read_datasets(path: str | Path) -> tuple[list[int], dict[int, dict]]:
+def read_functions(path: str | Path) -> tuple[list[int], list[dict], dict[int, tuple], dict | None]:
+    """Return (number of each dataset, datasets 58, {node: (x, y, z) in m}, dataset 164 or None).
+
+    Raises ImportProblem for a file that is damaged, for units that are none, and for nodes that are
+    incomplete or at two places.
+    """
+    types, sets = _read_datasets(path)
+    units = next((data for index, data in sets.items() if types[index] == 164), None)
+    if units is not None and not all(0.0 < units[key] < np.inf for key in ("length", "force")):
+        raise ImportProblem(
+            f"{path}: dataset 164: {units['length']:g} and {units['force']:g} are no units of"
+            f" length and force per SI unit: {AGAIN}"
+        )
+    tables = [data for index, data in sets.items() if types[index] in (15, 2411)]
+    functions = [data for index, data in sets.items() if types[index] == 58]
+    return types, functions, _nodes_of(tables, units, path), units
+
+
+def _read_datasets(path):
     """Return (number of each dataset, {index: content} of those that are read).
 
     Raises ImportProblem for a file that is damaged: pyuff leaves out datasets that it can not name.
@@ -235,7 +244,7 @@ def unit_of(data: dict, type_: int, units: dict | None) -> tuple[str, str]:
     return unit if abs(factor - 1.0) < 1e-9 else f"{factor:.12g} {unit}", "dataset 164"
 
 
-def nodes_of(tables: list[dict], units: dict | None, path: str | Path) -> dict[int, tuple]:
+def _nodes_of(tables, units, path):
     """Return {node: (x, y, z) in m} of datasets 15 and 2411.
 
     Empty without dataset 164, which gives their unit. Raises ImportProblem for incomplete nodes and

@@ -4,20 +4,28 @@ forces, the law that the records demand, and the error of the free response.
 For linear modes held runs and the forces that the sensors demand have a closed form.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from vibroimpact.identify.spectra.periodic_lines import LevelLines
 from vibroimpact.reduction.modal_structure import IdentifiedModes
 
 from ..constants import STRENGTH
-from ..evidence import FINER, HOLDING_BANDS, LAW_STRETCHES, PLACES, SERIES, STATES
+from ..evidence import (
+    FINER,
+    HOLDING_BANDS,
+    LAW_STRETCHES,
+    PLACES,
+    SERIES,
+    STATES,
+    holding_force,
+    law_against_motion,
+)
 from ..free_runs import SEEDS, FreeRuns
+from ..measurement.signals import Signals
 from .trial import LocalTerm, Records, Trial
 
 SEED = 7  # of the noise
@@ -39,7 +47,7 @@ def steady_lines(trial: Trial, records: Records) -> list[np.ndarray]:
     return [own[:, int(records.mean) :] for own in lines]
 
 
-def free_runs(before: Trial, after: Trial, records: Records) -> FreeRuns:
+def free_runs(signals: Signals, before: Trial, after: Trial, records: Records) -> FreeRuns:
     """Return the FreeRuns of two trials, at the excited lines of the lowest level.
 
     The measured scatter between periods is drawn for each of SEEDS runs: their distance is the
@@ -68,25 +76,23 @@ def free_runs(before: Trial, after: Trial, records: Records) -> FreeRuns:
     first = runs(before)
     last = first if after is before else runs(after)
     measured = psd([level.response[:, lines] for level, lines in own])
-    return FreeRuns(grids[0], measured, first, last, psd(scatter).mean(axis=2))
+    return FreeRuns(signals, grids[0], measured, first, last, psd(scatter).mean(axis=2))
 
 
-@dataclass(frozen=True, eq=False)
 class _Level:
     """A level at its excited lines: their numbers, frequency in Hz, s in rad/s, force of the drive,
-    motions (series, channel, line) in m, measured and of both states.
+    motions (series, channel, line) in m, measured and of both states. samples: of a period, FINER
+    than the band needs.
     """
 
-    lines: np.ndarray
-    frequency: np.ndarray
-    s: np.ndarray
-    force: np.ndarray
-    motions: np.ndarray
-
-    @property
-    def samples(self) -> int:
-        """Return the samples of a period, FINER than the band needs."""
-        return 2 * FINER * int(self.lines[-1])
+    def __init__(
+        self, level: LevelLines, lines: np.ndarray, states: list[np.ndarray], modes: IdentifiedModes
+    ):
+        self.lines, self.frequency = lines, level.frequency[lines]
+        self.s, self.force = 2j * np.pi * self.frequency, level.force[lines]
+        series = np.array([level.response[:, lines], *states])
+        self.motions = series / modes.sensor_factors(self.frequency)
+        self.samples = 2 * FINER * int(lines[-1])
 
     def series(self, values: np.ndarray, samples: int) -> np.ndarray:
         """Return (.., sample) of complex amplitudes (.., line) over a period."""
@@ -121,13 +127,9 @@ def evidence_of(
     ).assign({name: campaign[name].variable for name in PLACES if name in campaign})
     if not mechanical:
         return out.assign_attrs(left_out="the response is no motion, and forces are not in N")
-    levels, states = [], [steady_lines(trial, records) for trial in (before, after)]
-    for number, (level, lines) in enumerate(zip(records.levels, records.excited, strict=True)):
-        frequency = level.frequency[lines]
-        series = [level.response[:, lines], *(state[number] for state in states)]
-        motions = np.array(series) / before.modes.sensor_factors(frequency)
-        s = 2j * np.pi * frequency
-        levels.append(_Level(lines, frequency, s, level.force[lines], motions))
+    states = (steady_lines(trial, records) for trial in (before, after))
+    both = zip(records.levels, records.excited, *states, strict=True)
+    levels = [_Level(level, lines, own, before.modes) for level, lines, *own in both]
     out = out.assign(_free(levels, held)).assign(_holding(levels, before.modes))
     return out.assign(_law(levels, records, after))
 
@@ -150,11 +152,7 @@ def _holding(levels: Sequence[_Level], modes: IdentifiedModes) -> dict[str, Any]
         for own in range(HOLDING_BANDS):
             power = 2.0 * np.sum(np.abs(force[:, band == own]) ** 2, axis=1)
             found[:, number, :, own] = np.sqrt(power)
-    return {
-        "holding_force": (("state", "stretch", "channel", "band"), found, {"units": "N"}),
-        "band_low": ("band", edges[:-1], {"units": "Hz"}),
-        "band_high": ("band", edges[1:], {"units": "Hz"}),
-    }
+    return holding_force(found, edges)
 
 
 def _law(levels: Sequence[_Level], records: Records, after: Trial) -> dict[str, Any]:
@@ -185,19 +183,10 @@ def _law(levels: Sequence[_Level], records: Records, after: Trial) -> dict[str, 
         demanded.append(level.series(np.array((force, motion)), samples))
         model.append(level.series(law, samples))
         known.append(share)
-    dims = ("law_stretch", "place", "sample")
-    out: dict[str, Any] = {
-        "place_name": ("place", np.array(list(terms), object)),
-        "owner_name": ("place", np.array(list(terms), object)),
-        "law_of_stretch": ("law_stretch", np.array(chosen)),
-        "resolution": (dims[:2], np.array(known)),
-    }
-    for part, (name, unit) in enumerate((("force", "N"), ("motion", "m"))):
-        told, own = (np.array(rows, np.float32)[:, part] for rows in (demanded, model))
-        both = np.stack([np.full_like(own, np.nan), own])
-        out[f"demanded_{name}"] = dims, told, {"units": unit}
-        out[f"model_{name}"] = ("state", *dims), both, {"units": unit}
-    return out
+    told, own = (np.array(rows, np.float32).swapaxes(0, 1) for rows in (demanded, model))
+    states = np.stack([np.full_like(own, np.nan), own])
+    out = law_against_motion([*terms], [*terms], chosen, told, states)
+    return out | {"resolution": (("law_stretch", "place"), np.array(known))}
 
 
 def _demanded(

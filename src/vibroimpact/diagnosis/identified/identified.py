@@ -1,7 +1,5 @@
 """A campaign whose structure is identified from its own records, as a diagnosis needs it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,13 +15,13 @@ from vibroimpact.identify.spectra.periodic_lines import LevelLines
 
 from ..decision import Decision
 from ..free_runs import FreeRuns
+from ..measurement.signals import signals_of
 from ..measurement.usable import refuse
 from ..search import Hypothesis
 from .evidence import PERIODS_BEFORE, evidence_of, free_runs, steady_lines
-from .fit import Fitted, estimates, fitted
+from .fit import Fitted
 from .levels import levels_of, naming_split, noise_row
 from .linear_models import (
-    LinearModels,
     fit_family,
     linear_errors,
     linear_models,
@@ -42,7 +40,7 @@ PREDICTION = ("level", "split", "channel", "error_linear", "error_refitted", "er
 
 
 @dataclass(frozen=True, eq=False)
-class Identified:
+class Identified(Setting):
     """A campaign by its levels, in ascending load, and the models identified from it.
 
     campaign: its usable part. everything: Records of all levels. units: of generic channels, see
@@ -50,20 +48,8 @@ class Identified:
     """
 
     campaign: xr.Dataset
-    setting: Setting
     everything: Records
     units: dict[str, str]
-
-    @property
-    def linear(self) -> LinearModels:
-        """Return the linear models."""
-        return self.setting.linear
-
-    @property
-    def band_Hz(self) -> tuple[float, float]:
-        """Return the band in Hz; one that begins at 0 from a hundredth of its end."""
-        low, high = self.everything.band_Hz
-        return max(low, 0.01 * high), high
 
     @property
     def fitted_levels(self) -> list[LevelLines]:
@@ -76,10 +62,10 @@ class Identified:
         Raises Refused if it has no bounded motion at some level.
         """
         (best, chance), *others = decision.ranked
-        records = replace(self.setting.fitted, levels=self.fitted_levels)
+        records = replace(self.fitted, levels=self.fitted_levels)
         try:
-            own = fitted(cast(Trial, best.point), records, PASSES)
-            own = replace(own, point=self.everything.with_offsets(own.point))
+            own = Fitted(cast(Trial, best.point), records, PASSES)
+            own.point = self.everything.with_offsets(own.point)
             steady_lines(own.point, self.everything)
         except ValueError as error:
             refuse(str(error), rows)
@@ -94,13 +80,17 @@ class Identified:
         return given, given if chosen is None else cast(Trial, chosen.point)
 
     def free_runs(self, chosen: Hypothesis | None) -> FreeRuns:
-        """Return the FreeRuns before and after."""
-        return free_runs(*self.states(chosen), self.everything)
+        """Return the FreeRuns before and after; the band of a mean begins at a hundredth of its
+        end.
+        """
+        low, high = self.everything.band_Hz
+        signals = replace(signals_of(self.campaign), band_Hz=(max(low, 0.01 * high), high))
+        return free_runs(signals, *self.states(chosen), self.everything)
 
     def effect_rows(self, hypothesis: Hypothesis) -> list[dict[str, Any]]:
         """Return the rows of `effects` of verdict.json."""
         own, rows = cast(Fitted, hypothesis.fit), []
-        for term, told in zip(own.point.terms, estimates(own), strict=True):
+        for term, told in zip(own.point.terms, own.estimates(), strict=True):
             for each in told.values():
                 each["unit"] = self.units.get(each["unit"], each["unit"])
             known = EFFECTS.get(term.effect_id)
@@ -111,16 +101,14 @@ class Identified:
     def model_text(self, trial: Any, sentence: str) -> str:
         """Return the YAML text of the configuration of a Trial."""
         loads = [level.load_rms for level in self.everything.levels]
-        return configuration_text(
-            trial, self.setting.places, self.everything.band_Hz, loads, sentence
-        )
+        return configuration_text(trial, self.places, self.everything.band_Hz, loads, sentence)
 
     def evidence(self, chosen: Hypothesis | None) -> xr.Dataset:
         """Return the evidence before and after, see evidence.evidence_of; with place_error
         (ranked_place,), and the equivalent stiffness and damping (fitted_level,) of the place of
         the first law, or of the best one: changes against the lowest level.
         """
-        places, (before, after) = self.setting.ranking, self.states(chosen)
+        places, (before, after) = self.ranking, self.states(chosen)
         out = evidence_of(self.campaign, self.everything, before, after, not self.units)
         place = [*(term.place for term in after.terms if term.place in places), *places][0]
         levels = self.fitted_levels
@@ -183,54 +171,42 @@ def identified(
         if usable.attrs.get("whole_records", 0):
             levels = levels_of(usable, linear.again, band)
             linear = linear_models(levels, sensors, band, stated.residual_modes)
-        setting = _setting(stated, places, levels, linear, band, log)
+        named, tried = naming_split(levels)
+        ranking = ranked_places(places, linear.base, named, band)
     except ValueError as error:
         text = str(error)
         refuse(f"{text[0].upper()}{text[1:].rstrip('.')}.", rows)
-    lowest = setting.fitted.levels[0]
-    missed = float(np.median(linear_errors(linear.base, lowest, band)))
+    log("places: " + ", ".join(f"{place} {own.error:.3g}" for place, own in ranking.items()))
+    missed = float(np.median(linear_errors(linear.base, named[0], band)))
     if missed > MISSED:
         refuse(
-            f"The linear model of {lowest.name} misses {missed:.0%} of the response:"
+            f"The linear model of {named[0].name} misses {missed:.0%} of the response:"
             " what it lacks can not be told from what a law would add. A lower level, a narrower"
             " band_Hz, or a channel at the force may help.",
             rows,
         )
     rows += [noise_row(level, band) for level in levels]
-    everything = Records(levels, band, stated.mean)
-    return Identified(usable, setting, everything, own_units(usable, drive)), rows
-
-
-def _setting(
-    stated: MeasuredStructure,
-    places: dict[str, dict[str, float]],
-    levels: Sequence[LevelLines],
-    linear: LinearModels,
-    band: Sequence[float],
-    log: Log,
-) -> Setting:
-    """Return the Setting of a search."""
-    named, tried = naming_split(levels)
-    ranking = ranked_places(places, linear.base, named, band)
-    log("places: " + ", ".join(f"{place} {own.error:.3g}" for place, own in ranking.items()))
-    candidates, additions = laws_of(stated, tried_places(ranking))
-
-    def term(name: str) -> LocalTerm:
-        law, _, place = name.partition(".")
-        own = places.get(place)
-        row = None if own is None else row_of(own, linear.base.names)
-        return LocalTerm(law, place, row, location=location(place, own))
 
     def terms(stated: Sequence[str]) -> list[LocalTerm]:
         """Return those that can act: without modal motion at its place a law has no start value."""
-        return [own for own in map(term, stated) if own.row is None or own.place in ranking]
+        own = (_term(name, places, linear.base.names) for name in stated)
+        return [each for each in own if each.row is None or each.place in ranking]
 
-    return Setting(
-        places,
-        ranking,
-        terms(candidates),
-        terms(additions),
-        linear,
+    candidates, additions = map(terms, laws_of(stated, tried_places(ranking)))
+    found = Identified(
+        *(places, ranking, candidates, additions, linear),
         Records(named, band, stated.mean, stated.emphasis),
         Records(tried, band, stated.mean),
+        usable,
+        Records(levels, band, stated.mean),
+        own_units(usable, drive),
     )
+    return found, rows
+
+
+def _term(name: str, places: dict[str, dict[str, float]], channels: Sequence[str]) -> LocalTerm:
+    """Return the term of "law.place", without values; channels: their names."""
+    law, _, place = name.partition(".")
+    own = places.get(place)
+    row = None if own is None else row_of(own, channels)
+    return LocalTerm(law, place, row, location=location(place, own))

@@ -11,14 +11,11 @@ Departure: the transient of a nonlinear response depends on the force as well; i
 distortion, the smaller the longer the record is.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
-from scipy.fft import next_fast_len
 
 from vibroimpact.campaign.checks.stated import check_row
 from vibroimpact.campaign.signals import campaign_signals
@@ -126,35 +123,28 @@ def long_record_lines(
     modes: IdentifiedModes | None = None,
     band_Hz: tuple[float, float] = (0.0, np.inf),
 ) -> LevelLines:
-    """Return LevelLines of one record without period: force (time,), response (channel, time), Hz;
-    of its last samples, a fast length of an FFT.
+    """Return LevelLines of one record without period: force (time,), response (channel, time), Hz.
 
     modes: known ones, whose free decay is the transient over a band; None for local polynomials.
     noise is the scatter about the local polynomials: noise and distortion. periods is 0. Raises
     ValueError for a record too short.
     """
-    size = quick_length(force.size)
+    size = force.size
     if size < FEWEST_SAMPLES:
         raise ValueError(
-            f"{name}: {force.size} samples are too short for a record without period:"
+            f"{name}: {size} samples are too short for a record without period:"
             f" {FEWEST_SAMPLES} are the least"
         )
-    last = force[-size:]
-    driven = np.fft.rfft(last - last.mean()) / size
-    lines = np.fft.rfft(response[:, -size:], axis=-1) / size
+    driven = np.fft.rfft(force - force.mean()) / size
+    lines = np.fft.rfft(response, axis=-1) / size
     transient, scatter = _local_polynomials(driven, lines)
-    frequency, load = np.fft.rfftfreq(size, 1.0 / sampling_frequency), np.sqrt(np.mean(last**2))
+    frequency, load = np.fft.rfftfreq(size, 1.0 / sampling_frequency), np.sqrt(np.mean(force**2))
     if modes is not None:
         inside = (frequency >= band_Hz[0]) & (frequency <= band_Hz[1])
         part = frequency[inside], driven[inside], lines[:, inside]
         transient = np.zeros_like(lines)
         transient[:, inside] = _free_decay(modes, *part)
     return LevelLines(name, split, float(load), frequency, driven, lines - transient, scatter, 0)
-
-
-def quick_length(size: int) -> int:
-    """Return the largest fast length of an FFT up to size."""
-    return next(count for count in range(size, 0, -1) if next_fast_len(count, real=True) == count)
 
 
 def _free_decay(modes, frequency, driven, lines):

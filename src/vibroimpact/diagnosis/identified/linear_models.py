@@ -9,8 +9,6 @@ than the small difference of two measured shapes. Source: the family of linear m
 Balmes, Corus 2012, section 4.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -6,8 +6,6 @@ a saturation below its limit), so that the modes of the lowest level stay nearly
 completed model. Their ids are those of the catalogue of effects, if it has them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 

@@ -2,14 +2,13 @@
 sound in every record, periods or the last stretch of a long record.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from scipy.fft import prev_fast_len
 
 from vibroimpact.campaign.checks.file_checks import refused, usable_signals
 from vibroimpact.campaign.checks.stated import check_row
@@ -24,7 +23,7 @@ from vibroimpact.campaign.signals import (
 from vibroimpact.identify.spectra.periodic_lines import LevelLines
 
 from ..measurement.usable import Refused, checked_campaign, refuse
-from .levels import noise_share, quick_length
+from .levels import noise_share
 
 OTHER_FORCE = 0.01  # of the first force: another one above it can not be left out
 # Of the end and of the beginning of the excited band: the longer of them is kept of a record
@@ -137,11 +136,11 @@ def unsettled_periods(response: np.ndarray, period: int) -> int:
 
 
 def _last_stretch(campaign: xr.Dataset, longest: int) -> xr.Dataset:
-    """Return the campaign with the last samples of every record, at most `longest`, moved to the
-    front.
+    """Return the campaign with the last samples of every record, at most `longest` and a fast
+    length of an FFT, moved to the front.
     """
     counts = [valid_count(campaign, record) for record in range(campaign.sizes["record"])]
-    kept = np.array([quick_length(min(count, longest)) for count in counts])
+    kept = np.array([prev_fast_len(min(count, longest), real=True) for count in counts])
     out = campaign.isel(time=slice(0, int(kept.max()))).copy(deep=True)
     for record, (count, size) in enumerate(zip(counts, kept, strict=True)):
         for name in ("force", "response"):

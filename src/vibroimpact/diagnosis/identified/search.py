@@ -2,8 +2,6 @@
 levels that were set aside for the choice.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -14,7 +12,7 @@ from typing import Any, cast
 import numpy as np
 
 from ..search import Hypothesis, Search
-from .fit import fitted
+from .fit import Fitted
 from .linear_models import Family, LinearModels, linear_errors, stiffness_unit
 from .local_laws import Scales
 from .trial import LocalTerm, Records, Trial
@@ -112,14 +110,14 @@ def _raced(candidates: Sequence[Sequence[Trial]], setting: Setting, log: Log) ->
     """
     raced, found = [], []
     for starts in filter(None, candidates):
-        tried = [fitted(start, setting.fitted, RACE_PASSES) for start in starts]
+        tried = [Fitted(start, setting.fitted, RACE_PASSES) for start in starts]
         tried.sort(key=lambda each: each.cost)
         raced.append([each for each in tried[:2] if each.cost < CLOSE * tried[0].cost])
     costs = sorted(each[0].cost for each in raced)[:FINALISTS]
     for each in raced:
         own = each[0]
         if own.cost <= min(costs[-1], RACED_ON * costs[0]):
-            finals = [fitted(start.point, setting.fitted, PASSES) for start in each]
+            finals = [Fitted(start.point, setting.fitted, PASSES) for start in each]
             own = min(finals, key=lambda final: final.cost)
         gains = []
         for records, before in zip((setting.fitted, setting.tried), setting.reference, strict=True):

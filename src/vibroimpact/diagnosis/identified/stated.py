@@ -1,7 +1,5 @@
 """The statements on a structure without a model, and defaults from its records."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from itertools import combinations
@@ -140,18 +138,12 @@ def own_units(campaign: xr.Dataset, drive: int) -> dict[str, str]:
     if kind != "generic":
         return {}
     force, moved = si_unit(force_units(campaign, 0), "excitation"), si_unit(units, kind)
-    own = f"({moved})"
+    own = {"N": force, "m": f"({moved})"}
     units_of = {
-        "N": force,
-        "m": moved,
-        "N/m": f"{force}/{own}",
-        "N/m2": f"{force}/{own}2",
-        "N/m3": f"{force}/{own}3",
-        "N s/m": f"{force} s/{own}",
-        "m/s": f"{own}/s",
-        "N s2/m2": f"{force} s2/{own}2",
+        unit: "".join(own.get(letter, letter) for letter in unit)
+        for unit in ("N/m", "N/m2", "N/m3", "N s/m", "m/s", "N s2/m2")
     }
     if force == moved:  # powers of one unit
         units_of |= {"N/m": "1", "N/m2": f"{force}-1", "N/m3": f"{force}-2", "N s/m": "s"}
         units_of |= {"m/s": f"{force} s-1", "N s2/m2": f"s2 {force}-1"}
-    return units_of
+    return units_of | {"N": force, "m": moved}

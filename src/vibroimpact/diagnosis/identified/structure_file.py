@@ -1,7 +1,5 @@
 """A user's statements on a structure without a model: `structure: {kind: identified, ...}`."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from difflib import get_close_matches
 from pathlib import Path

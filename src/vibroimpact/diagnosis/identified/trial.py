@@ -4,8 +4,6 @@ A response that repeats by itself needs no holding: a free periodic run is compa
 line by line.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property

@@ -2,8 +2,6 @@
 elements, under a random force in the band.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any

@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.campaign.checks.stated import check_row
-from vibroimpact.campaign.file import CampaignError, force_units, support_ratios
+from vibroimpact.campaign.file import CampaignError, force_units, support_ratios, valid_count
 from vibroimpact.campaign.force_kinds import BASE, FORCE, force_kinds
 from vibroimpact.config.name_checks import TUBES
 from vibroimpact.config.stage_settings import ConfigPart
@@ -98,10 +98,8 @@ def channel_rows(campaign: xr.Dataset) -> list[dict]:
 
 def record_rows(campaign: xr.Dataset) -> list[dict]:
     """Return a row of checks for each record that is too short for a comparison."""
-    names = campaign["record_name"].values
-    whole = np.full(names.size, campaign.sizes["time"])
-    samples = campaign["valid_samples"].values if "valid_samples" in campaign else whole
-    seconds = samples / float(campaign.attrs["sampling_frequency"])
+    names, rate = campaign["record_name"].values, float(campaign.attrs["sampling_frequency"])
+    seconds = [valid_count(campaign, record) / rate for record in range(names.size)]
     return [
         check_row(
             SHORT,

@@ -1,6 +1,6 @@
 """The measuring chain: gains and delays of channels, and a gain of the force."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,7 +23,7 @@ class Measuring:
         self, effect_id: str, parameters: Mapping[str, float], location: str, names: Sequence[str]
     ) -> "Measuring":
         """Return the Measuring with the effect sensor_gain or sensor_delay at a location too, one
-        of places(names (channel,)); parameters: {"factor": ...} or {"delay": s}.
+        of names (channel,) or NO_CHANNELS; parameters: {"factor": ...} or {"delay": s}.
         """
         chosen = np.array([location in (one, "responses", "force_and_responses") for one in names])
         if effect_id == "sensor_delay":
@@ -32,8 +32,3 @@ class Measuring:
         factor, on_force = parameters["factor"], location in ("force", "force_and_responses")
         gain = self.gain * np.where(chosen, factor, 1.0)
         return replace(self, gain=gain, force_gain=self.force_gain * (factor if on_force else 1.0))
-
-
-def places(names: Iterable[str]) -> list[str]:
-    """Return the locations of a fault: every channel, the force, all responses, or both."""
-    return [*names, *NO_CHANNELS]

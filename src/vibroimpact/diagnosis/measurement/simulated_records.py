@@ -57,7 +57,12 @@ def simulate_records(
         offsets = _offsets(len(model.support_of_point), batch, gaps)
         offsets, seat = seated(model, schedule, gaps, offsets)
         initial = rest_state(model, schedule, gaps, offsets, seat)
-        led, lead = (schedule, 0) if initial is None else _led(schedule)
+        led, lead = schedule, 0
+        if initial is not None:
+            # a start-up as long as the memory of the output filter, which then starts on a
+            # structure at rest, even if the rest position is not zero
+            lead = (schedule.filter.delay + SLOTS) * RATIO
+            led = replace(schedule, start_up=lead / schedule.steps_per_second)
         lost: set[int] = set()
 
         def drive(at, count, batch=batch, lead=lead, lost=lost):
@@ -107,11 +112,3 @@ def _at_step(force, schedule):
     kept = min(len(fine), len(out) - 1)
     out[1 : 1 + kept] = fine[:kept]
     return out
-
-
-def _led(schedule):
-    """Return (Schedule, steps) with a start-up as long as the memory of the output filter, which
-    then starts on a structure at rest, even if the rest position is not zero.
-    """
-    ticks = schedule.filter.delay + SLOTS
-    return replace(schedule, start_up=ticks * RATIO / schedule.steps_per_second), ticks * RATIO

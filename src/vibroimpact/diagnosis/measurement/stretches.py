@@ -60,11 +60,6 @@ class Rates:
         return Schedule(self.steps_per_second, self.sampling, start_up_s, duration_s, scheme)
 
 
-def decimation_of(sampling: float, slowest_Hz: float) -> int:
-    """Return the decimation of records to a lower sampling frequency, at least the slowest."""
-    return max(int(sampling / slowest_Hz), 1)
-
-
 def rates_of(
     sampling: float, steps_per_second: float, decimation: int = 1, stages: int = LEAST_STAGES
 ) -> Rates:

@@ -7,7 +7,7 @@ languages; tests/diagnosis/test_verdict.py compares it.
 import json
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self, get_args
+from typing import Annotated, Any, Literal, Self, get_args, get_origin
 
 from pydantic import (
     BaseModel,
@@ -28,6 +28,7 @@ Conclusion = Literal["none", "named", "ambiguous", "partly_explained", "unknown"
 CONCLUSIONS: tuple[Conclusion, ...] = get_args(Conclusion)
 WITH_EFFECTS: tuple[Conclusion, ...] = ("named", "partly_explained")
 WITH_AMBIGUITY_SET: tuple[Conclusion, ...] = ("named", "ambiguous", "partly_explained")
+NINETY_SD = 1.645  # sigma: half width of the 90 % interval of a normal law
 
 # An integer stays one, so that a file that is read and written again keeps its bytes.
 Number = Annotated[int | float, WithJsonSchema({"type": "number"})]
@@ -262,26 +263,21 @@ def not_run_sentence(ids: Iterable[str]) -> str:
 def not_testable(
     checks: list[dict[str, Any]],
     provenance: dict[str, Any],
-    next_measurement: str | None = None,
-    misfit: MisfitBySplit | None = None,
-    cost: dict[str, Any] | None = None,
+    next_measurement: str,
+    cost: dict[str, Any],
 ) -> Verdict:
     """Return the verdict on a campaign that can not be judged; checks: rows of CheckResult, cost:
-    values of Cost, nothing if None.
+    values of Cost.
     """
-    cost = cost or {"cpu_seconds": 0.0, "simulations": 0, "by_stage": {}}
+    required = {name: own for name, own in Verdict.model_fields.items() if own.is_required()}
+    lists = {name for name, own in required.items() if get_origin(own.annotation) is list}
+    unknown = dict.fromkeys(Misfit.model_fields)
     return Verdict.from_values(
-        {
+        {name: [] if name in lists else None for name in required}
+        | {
             "verdict": "not_testable",
-            "effects": [],
-            "ambiguity_set": [],
-            "ranking": [],
             "next_measurement": next_measurement,
-            "broken_invariances": [],
-            "regions": [],
-            "misfit": misfit.to_values() if misfit else {"fit": None, "holdout": None},
-            "p_global_before": None,
-            "p_global_after": None,
+            "misfit": {"fit": unknown, "holdout": unknown},
             "checks": checks,
             "seconds": cost["cpu_seconds"],
             "simulations": cost["simulations"],

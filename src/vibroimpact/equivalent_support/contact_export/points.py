@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +12,9 @@ from vibroimpact.reduction.modal_model import ModalModel
 from ..answer import EquivalentError
 from ..export_formats.frames import UnitSystem, head
 from ..springs import SpringSet
+
+# Keys of a support whose laws no format has.
+WITHOUT_FORMAT = ("plate", "other_point", "preload_N", "hunt_crossley_s_per_m", "hertz_N_per_m15")
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,9 +94,9 @@ def contact_set(config: Config, model: ModalModel, gap_m: float) -> ContactSet:
             " measured modes): give the places of their points in `points`"
         )
     for support in config.supports:
-        reason = next(_reasons(support), None)
-        if reason:
-            raise EquivalentError(f"support {support.name}: {reason} is in no export of contact")
+        laws = [key for key in WITHOUT_FORMAT if getattr(support, key) not in (None, 0.0)]
+        if laws:
+            raise EquivalentError(f"support {support.name}: {laws[0]} is in no export of contact")
     numbers = [
         int((model.support_of_point[:point] == support).sum()) + 1
         for point, support in enumerate(model.support_of_point)
@@ -108,16 +110,6 @@ def contact_set(config: Config, model: ModalModel, gap_m: float) -> ContactSet:
             )
     note = f"Contact of the supports of '{config.study}' at a gap of {1e3 * gap_m:.6g} mm."
     return ContactSet(points, (note,))
-
-
-def _reasons(support: object) -> Iterator[str]:
-    """Yield the laws of a support that no format has, by their keys."""
-    for key in ("plate", "other_point", "preload_N"):
-        if getattr(support, key) is not None:
-            yield key
-    for key in ("hunt_crossley_s_per_m", "hertz_N_per_m15"):
-        if getattr(support, key) != 0.0:
-            yield key
 
 
 def _point(model: ModalModel, point: int, number: int, gap_m: float) -> ContactPoint:

@@ -1,12 +1,14 @@
 """The equivalent support of a measured tube: a campaign and a model in, k and c out.
 
 Each record becomes the spectra of a case, and the functions of a study do the rest. No contact is
-simulated.
+simulated. Records of one gap and about one level are the seeds of a case. The level of a record is
+the RMS of its force in N. If no record has one it is the RMS of the displacement in m, so that
+records still differ by the strength of the motion.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -22,20 +24,24 @@ from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.identify.estimate import table_rows
 from vibroimpact.identify.identify_case import identify_case
 from vibroimpact.identify.linear.support_groups import unreached_supports
+from vibroimpact.io.records import write_record, write_table
 from vibroimpact.reduction.modal_model import ModalModel
+from vibroimpact.reduction.model_file import write_model
 from vibroimpact.study.agreement_dataset import consistency_dataset
 from vibroimpact.study.cases import Case
-from vibroimpact.study.equivalent_table import equivalent_rows
+from vibroimpact.study.equivalent_table import DIGEST_COLUMN, equivalent_rows
 from vibroimpact.study.method_agreement import consistency_rows, summary_rows
 
 from .forces import KnownForce
-from .levels import SAME_LOAD, SAME_RESPONSE, cases_of_records, gaps_of_records
 from .sensors import MeasuredTube, measured_tube
 from .settings import measured_settings, with_grid
 from .spectra import displacements, measured_spectra
 from .usable import identification_problems, signal_problems
 
 Rows = list[dict[str, Any]]
+# Largest ratio of two levels of one case. Responses of one level scatter more than its forces.
+SAME_LOAD, SAME_RESPONSE = 1.05, 1.25
+DIGITS = 4
 LOAD, RESPONSE = "load_rms_N", "response_rms_m"  # columns that a level can be
 
 
@@ -75,6 +81,33 @@ class MeasuredSupports:
         if self.levels == RESPONSE:
             found["load"].attrs = {"units": "m", "long_name": "RMS of the displacement"}
         return found
+
+    def write(self, folder: str | Path, attributes: Mapping[str, Any], digest: str) -> None:
+        """Write the files of a study: equivalent.csv, consistency.csv, consistency_summary.csv,
+        consistency.nc and model.nc.
+
+        attributes: of the netCDF files, see provenance.file_attributes.
+        digest: answer_digest of the configuration of the tube.
+
+        If no record has a load, its columns are NaN and response_rms_m (m) stands behind them.
+        """
+        folder = Path(folder)
+        tables = {
+            "equivalent": self.equivalent,
+            "consistency_summary": self.summary,
+            "consistency": [
+                row | {"record": self.records[Case(row["load_rms_N"], row["gap_m"], row["seed"])]}
+                for row in self.rows
+            ],
+        }
+        unknown = {"load_rms_N": np.nan, "load_over_gap": np.nan}
+        for name, rows in tables.items():
+            if self.levels == RESPONSE:
+                rows = [row | {RESPONSE: row["load_rms_N"]} | unknown for row in rows]
+            own = [row | {DIGEST_COLUMN: digest} for row in rows]
+            write_table(own, folder / f"{name}.csv")
+        write_record(self.to_dataset().assign_attrs(attributes), folder / "consistency.nc")
+        write_model(self.model, folder / "model.nc", dict(attributes))
 
 
 def equivalent_of(
@@ -155,6 +188,43 @@ def _levels(config: ConfigPart, tube: MeasuredTube) -> tuple[np.ndarray, str]:
     row = tube.points.index(config.identification.response_point)
     moved = [displacements(config, tube, record)[row] for record in range(len(signals.records))]
     return np.array([np.sqrt(np.mean(series**2)) for series in moved]), RESPONSE
+
+
+def cases_of_records(level: np.ndarray, gap_m: np.ndarray, same: float = SAME_LOAD) -> list[Case]:
+    """Return the Case of each record.
+
+    level: (record,) RMS of the force in N, or of the displacement in m.
+    gap_m: (record,) radial gap in m.
+    same: largest ratio of two levels of one case.
+    """
+    found: dict[int, Case] = {}
+    for gap in np.unique(gap_m):
+        for together in _alike(level, np.flatnonzero(gap_m == gap), same):
+            middle = float(f"{np.mean(level[together]):.{DIGITS}g}")
+            for seed, record in enumerate(sorted(together)):
+                found[record] = Case(middle, float(gap), seed)
+    return [found[record] for record in range(len(level))]
+
+
+def _alike(level: np.ndarray, records: Sequence[int] | np.ndarray, same: float) -> list[list[int]]:
+    """Return the records of each level, ascending."""
+    groups: list[list[int]] = []
+    for record in sorted(map(int, records), key=lambda record: level[record]):
+        if groups and level[record] <= same * level[groups[-1][0]]:
+            groups[-1].append(record)
+        else:
+            groups.append([record])
+    return groups
+
+
+def gaps_of_records(stated_m: np.ndarray, model_m: Sequence[float]) -> np.ndarray:
+    """Return (record,) gaps in m: as stated, else the largest of the model's grid.
+
+    stated_m: (record,) m, NaN if a record states none.
+    model_m: gaps of the model's grid.
+    """
+    known = np.isfinite(stated_m) & (stated_m > 0.0)
+    return np.where(known, stated_m, max(model_m))
 
 
 def _notes(config: Config, tube: MeasuredTube) -> tuple[str, ...]:

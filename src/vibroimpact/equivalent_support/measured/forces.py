@@ -65,7 +65,9 @@ def known_force(
         psd = partial(turbulence_psd, config.excitation, diameter)
         return KnownForce(True, tuple(config.excitation.band_Hz), own_drive, psd)
     band = (1.0 / config.spectra.segment_s, HIGHEST * signals.rate)
-    return KnownForce(False, band, _pushed_alike(config, model, own_drive, band[1]))
+    _, modes = reached_supports(replace(model, drive_shapes=own_drive), groups_of(config))
+    modes = modes[model.frequencies[modes] <= PUSHED_BEYOND * band[1]]
+    return KnownForce(False, band, np.eye(model.modes)[:, modes])  # a force for each of them
 
 
 def _independent(
@@ -82,15 +84,6 @@ def _independent(
     variance, parts = np.linalg.eigh(total)
     kept = variance > SMALLEST_PART * variance[-1]
     return parts[:, kept] * np.sqrt(variance[kept] / variance.sum())
-
-
-def _pushed_alike(
-    config: ConfigPart, model: ModalModel, own_drive: np.ndarray, highest_Hz: float
-) -> np.ndarray:
-    """Return (mode, force) one force for each mode that the model's excitation reaches."""
-    _, modes = reached_supports(replace(model, drive_shapes=own_drive), groups_of(config))
-    modes = modes[model.frequencies[modes] <= PUSHED_BEYOND * highest_Hz]
-    return np.eye(model.modes)[:, modes]
 
 
 def groups_of(config: ConfigPart) -> str | tuple[tuple[str, ...], ...]:

@@ -42,22 +42,6 @@ class MeasuredTube:
     direction: tuple[float, ...]
 
 
-def with_own_drive(
-    config: ConfigPart, campaign: xr.Dataset, signals: CampaignSignals
-) -> tuple[ModalModel, np.ndarray]:
-    """Return (ModalModel attached to a campaign, its drives (mode, force) by its own excitation).
-
-    The latter are those of the campaign if it has forces.
-    """
-    model = attach(config, campaign)
-    if signals.forces:
-        return model, model.drive_shapes
-    # The same places give the same mesh, and with it the same modes.
-    places = {f"place_{number}": tuple(place) for number, place in enumerate(signals.points)}
-    own = config.model_copy(update={"points": {**config.points, **places}})
-    return model, build_model(own, motion_only=True).drive_shapes
-
-
 def measured_tube(
     config: ConfigPart, campaign: xr.Dataset, signals: CampaignSignals
 ) -> MeasuredTube:
@@ -67,7 +51,13 @@ def measured_tube(
 
     Raises CampaignError if there is none.
     """
-    model, own_drive = with_own_drive(config, campaign, signals)
+    model = attach(config, campaign)
+    own_drive = model.drive_shapes
+    if not signals.forces:
+        # The same places give the same mesh, and with it the same modes.
+        places = {f"place_{number}": tuple(place) for number, place in enumerate(signals.points)}
+        own = config.model_copy(update={"points": {**config.points, **places}})
+        own_drive = build_model(own, motion_only=True).drive_shapes  # by its own excitation
     force = known_force(config, signals, model, own_drive)
     model = replace(model, drive_shapes=force.drive_shapes)
     _, modes = reached_supports(model, groups_of(config))
@@ -76,9 +66,9 @@ def measured_tube(
     if not used.size:
         raise CampaignError("no channel measures a motion of the tube that the force causes")
     centreline = build_centreline(config.structure)
-    places = np.array([centreline.locate(signals.points[each], "a channel") for each in used])
-    order = np.argsort(places, kind="stable")
-    used, places = used[order], places[order]
+    arc_lengths = np.array([centreline.locate(signals.points[each], "a channel") for each in used])
+    order = np.argsort(arc_lengths, kind="stable")
+    used, arc_lengths = used[order], arc_lengths[order]
     direction = tuple(getattr(config.excitation, "direction", (0.0, 1.0, 0.0)))
     if signals.forces:
         direction = tuple(map(float, signals.force_directions[0]))
@@ -92,6 +82,6 @@ def measured_tube(
         sensor_directions=model.sensor_directions[used],
         line_shapes=model.sensor_shapes[:, used],
         line_positions=model.sensor_positions[used],
-        line_arc_length=places,
+        line_arc_length=arc_lengths,
     )
     return MeasuredTube(signals, sensed, force, used, points, direction)

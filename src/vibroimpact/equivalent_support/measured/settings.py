@@ -43,7 +43,13 @@ def measured_settings(config: ConfigPart, tube: MeasuredTube) -> ConfigPart:
         band_Hz=(max(low, lowest_read_Hz(identification)), high),
     )
     segment_s = round(config.spectra.segment_s * rate) / rate
-    _require_rate(identification.lscf.band_Hz[1], rate)
+    highest_Hz = identification.lscf.band_Hz[1]
+    if 2.0 * highest_Hz > 0.5 * rate:
+        raise CampaignError(
+            f"sampling_frequency = {rate:g} Hz is too low for identification.lscf.band_Hz"
+            f" up to {highest_Hz:g} Hz, which needs {4.0 * highest_Hz:g} Hz: give the model a lower"
+            " upper end"
+        )
     return config.model_copy(
         update={
             "spectra": config.spectra.model_copy(update={"segment_s": segment_s}),
@@ -124,16 +130,6 @@ def _around_the_peaks(config: ConfigPart, tube: MeasuredTube) -> Identification:
         lscf=Lscf(band_Hz=band(LSCF), references=("sensor",)),
         broadband=Broadband(point="sensor", band_Hz=band(BROADBAND)),
     )
-
-
-def _require_rate(highest_Hz: float, rate: float) -> None:
-    """Raise CampaignError if records do not reach up to the band of the identification."""
-    if 2.0 * highest_Hz > 0.5 * rate:
-        raise CampaignError(
-            f"sampling_frequency = {rate:g} Hz is too low for identification.lscf.band_Hz"
-            f" up to {highest_Hz:g} Hz, which needs {4.0 * highest_Hz:g} Hz: give the model a lower"
-            " upper end"
-        )
 
 
 def with_grid(config: ConfigPart, cases: Sequence[Case]) -> ConfigPart:

@@ -23,23 +23,18 @@ def displacements(config: ConfigPart, tube: MeasuredTube, record: int) -> np.nda
     Accelerations and velocities are integrated over time above half the lowest frequency that the
     identification reads.
     """
-    signals, low_Hz = tube.signals, lowest_read_Hz(config.identification)
+    signals, model = tube.signals, tube.model
+    low_Hz = lowest_read_Hz(config.identification)
+    first = signals.transient_periods * signals.period_samples if signals.forces else 0
+    if signals.starts_at_rest:
+        slowest = 0.5 * model.damping[model.omega > 0.0].min()
+        first = max(first, int(min(TIME_CONSTANTS / slowest, 10.0) * signals.rate))
     series = signals.response[record][tube.channels].copy()
     for row, channel in enumerate(tube.channels):
         for _ in range(TIME_DERIVATIVES[signals.kinds[channel]]):
             series[row] = integrated(series[row] - series[row].mean(), signals.rate, low_Hz)
-    kept = series[:, first_sample(tube) :]
+    kept = series[:, first:]
     return kept - kept.mean(axis=1, keepdims=True)
-
-
-def first_sample(tube: MeasuredTube) -> int:
-    """Return the first sample of a record at which the motion is stationary."""
-    signals, model = tube.signals, tube.model
-    transient = signals.transient_periods * signals.period_samples if signals.forces else 0
-    if not signals.starts_at_rest:
-        return transient
-    slowest = 0.5 * model.damping[model.omega > 0.0].min()
-    return max(transient, int(min(TIME_CONSTANTS / slowest, 10.0) * signals.rate))
 
 
 def measured_spectra(config: ConfigPart, tube: MeasuredTube, record: int, case: Case) -> xr.Dataset:

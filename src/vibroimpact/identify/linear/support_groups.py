@@ -73,7 +73,12 @@ def support_directions(
                 for direction, along in directions.items():
                     rows.setdefault(direction, []).append((point, along))
         for direction, entries in sorted(rows.items()):
-            found.append(_support_direction(model, group, direction, entries))
+            points, along = map(np.array, zip(*entries, strict=True))
+            names = (model.support_names[model.support_of_point[point]] for point in points)
+            shapes = np.einsum("mpd,pd->mp", model.contact_shapes[:, points], along)
+            contact = shapes * np.sqrt(model.contact_weight[points])
+            supports = tuple(dict.fromkeys(names))
+            found.append(SupportDirection(group, direction, supports, contact, points, along))
     return found
 
 
@@ -120,23 +125,6 @@ def _name(vector: np.ndarray, other: str) -> str:
     """Return the global axis that a unit vector (3,) lies along, else another word."""
     axis = int(np.argmax(np.abs(vector)))
     return "xyz"[axis] if abs(vector[axis]) > ALIGNED else other
-
-
-def _support_direction(
-    model: ModalModel, group: str, direction: str, entries: list[tuple[int, np.ndarray]]
-) -> SupportDirection:
-    points = np.array([point for point, _ in entries])
-    along = np.array([vector for _, vector in entries])
-    shapes = np.einsum("mpd,pd->mp", model.contact_shapes[:, points], along)
-    names = (model.support_names[model.support_of_point[point]] for point in points)
-    return SupportDirection(
-        group=group,
-        direction=direction,
-        supports=tuple(dict.fromkeys(names)),
-        contact=shapes * np.sqrt(model.contact_weight[points]),
-        rows=points,
-        along=along,
-    )
 
 
 @lru_cache(maxsize=2)

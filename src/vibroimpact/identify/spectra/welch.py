@@ -129,17 +129,6 @@ def psd_statistics(values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarr
     return power.mean(axis=-2), power.min(axis=-2), power.max(axis=-2)
 
 
-def cross_spectra(outputs: np.ndarray, references: np.ndarray) -> np.ndarray:
-    """Return the averaged one-sided cross-spectra (output, reference, frequency).
-
-    They are the mean over segments of X_output conj(X_reference).
-
-    outputs: (output, segment, frequency) as in SegmentSpectra.
-    references: (reference, segment, frequency).
-    """
-    return np.einsum("osf,rsf->orf", outputs, references.conj(), optimize=True) / outputs.shape[-2]
-
-
 def segment_correlation(spectra: ConfigPart, sampling_frequency_Hz: float, lags: int) -> np.ndarray:
     """Return rho (lags,): squared correlation of the spectra of segments 1, 2, ... steps apart.
 

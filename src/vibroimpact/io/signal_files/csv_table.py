@@ -36,7 +36,13 @@ def read_csv(path: str | Path) -> list[Signal]:
     names, units = _columns(path, header)
     if separator in ("\t", ";") and not any("." in line for _, line in lines):
         lines = [(number, line.replace(",", ".")) for number, line in lines]
-    empty = _empty_columns(names, lines, separator)
+    # a separator at the begin or the end of each line makes a column without name and values
+    rows = [line.split(separator) for _, line in lines]
+    empty = {
+        index
+        for index, name in enumerate(names)
+        if not name and all(row[index : index + 1] in ([""], []) for row in rows)
+    }
     table = _numbers(path, lines, (names, empty), separator)
     kept = [name for index, name in enumerate(names) if index not in empty]
     return signals_of_arrays(
@@ -126,18 +132,6 @@ def _split(line, columns, separator):
         if len(cells) == columns and len([cell for cell in cells if cell.strip()]) == columns:
             return cells
     return line.split(separator)
-
-
-def _empty_columns(names, lines, separator):
-    """Return the numbers of the columns without a name and without a value, as a separator at the
-    begin or the end of each line makes them.
-    """
-    return {
-        index
-        for index, name in enumerate(names)
-        if not name
-        and not any(line.split(separator)[index : index + 1] not in ([""], []) for _, line in lines)
-    }
 
 
 def _columns(path, cells):

@@ -1,7 +1,5 @@
 """Plots drawn with matplotlib: PNG and PDF, with the CSV of the plotted data."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from itertools import pairwise
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A tube with gaps in flows of rising velocity, and the predictions of the linear tubes."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

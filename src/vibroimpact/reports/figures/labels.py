@@ -1,7 +1,5 @@
 """Labels next to the things that they name, without overlap."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg

@@ -4,8 +4,6 @@
 column (see columns.COLUMNS) gives the label and the unit of an axis, and a name in the CSV.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any

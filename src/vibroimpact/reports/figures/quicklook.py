@@ -1,7 +1,5 @@
 """A first look at a campaign: PSD of all signals at every level, and RMS against load."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

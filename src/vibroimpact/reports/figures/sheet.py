@@ -1,7 +1,5 @@
 """A figure with its data: data drawn through a Sheet are also written to its CSV, in SI units."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Iterable, Iterator
 from itertools import repeat

@@ -1,7 +1,5 @@
 """The stability of a tube in a flow: ratios of velocities by mode, and eigenvalues."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

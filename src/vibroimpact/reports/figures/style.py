@@ -5,8 +5,6 @@ colour also differ in marker or line. Ordered quantities (load, stiffness) have 
 lightness rises with the value.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The plane on which a structure is drawn, and what a reader sees of it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,7 +21,7 @@ class View:
     depth: int
 
     @classmethod
-    def of(cls, positions: np.ndarray) -> View:
+    def of(cls, positions: np.ndarray) -> "View":
         """Return the View on the plane of the largest extents of positions (point, 3) in m."""
         depth = int(np.argmin(np.ptp(positions, axis=0)))
         horizontal, vertical = (axis for axis in range(3) if axis != depth)

@@ -1,4 +1,5 @@
-"""The free space of the tube's centre in the hole of a support, and the outline of the hole.
+"""The free space of the tube's centre in the hole of a support, the outline of the hole, and its
+static force on the tube, as the figures draw them.
 
 The two axes are the support's transverse directions. A profile is circular, planes or lobes; those
 with other names are resolved by `profiles.plain_profile`.
@@ -63,7 +64,10 @@ def hole_outline(
         walls = wall + scale * land_extra_gaps(profile, len(profile.normals_deg))
         return _between_stops(profile.normals_deg, walls, reach_m or OPEN * walls.max())
     angle = np.linspace(0.0, 2.0 * np.pi, POINTS)
-    return _polar(radius_m + scale * radial_gap(profile, gap_m, angle), angle)
+    radius = radius_m + scale * radial_gap(profile, gap_m, angle)
+    outline = np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
+    outline[-1] = outline[0]  # closed to the last bit
+    return outline
 
 
 def facing_angle(profile: ConfigPart) -> float:
@@ -71,13 +75,6 @@ def facing_angle(profile: ConfigPart) -> float:
     if profile.kind == "planes":
         return float(np.deg2rad(profile.normals_deg[0]))
     return float(np.deg2rad(profile.angle_deg)) if profile.kind == "lobes" else 0.0
-
-
-def _polar(radius: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Return (point, 2) of the polar coordinates of a full turn, closed to the last bit."""
-    outline = np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
-    outline[-1] = outline[0]
-    return outline
 
 
 def _between_stops(normals_deg: ConfigPart, distances: np.ndarray, reach: float) -> np.ndarray:
@@ -98,3 +95,45 @@ def _between_stops(normals_deg: ConfigPart, distances: np.ndarray, reach: float)
                 kept.append(here + (there - here) * depth / (depth - next_depth))
         outline = np.array(kept).reshape(-1, 2)
     return np.concatenate([outline, outline[:1]])
+
+
+def support_gap(support: ConfigPart, gap_m: float) -> float:
+    """Return the gap in m of a support: its own, or that of the case times its factor.
+
+    Contact points with factors of their own count with their mean.
+    """
+    if support.gap_m is not None:
+        return float(support.gap_m)
+    return float(gap_m * np.mean(support.gap_factor))
+
+
+def static_force(
+    support: ConfigPart, gap_m: float, angle: float, displacement: np.ndarray
+) -> np.ndarray:
+    """Return (displacement,) N: the component along a direction of the force on the support.
+
+    support: of the configuration; its stiffness, or Hertz law, in all.
+    gap_m: of the support, m.
+    angle: of the direction in rad, a stop's normal or a land's direction, so that the force of a
+        curved hole is along it.
+    displacement (displacement,): of the tube along the direction, m; negative on the other side.
+
+    Source: the laws of config.supports: k p or H p^1.5, with p the penetration; the forces of flat
+    stops add up.
+    """
+    moved = np.asarray(displacement, dtype=float)
+    if support.profile.kind == "planes":
+        along = np.cos(np.deg2rad(np.asarray(support.profile.normals_deg, dtype=float)) - angle)
+        gaps = gap_m + land_extra_gaps(support.profile, len(along))
+        penetration = np.maximum(moved[:, None] * along - gaps, 0.0)
+        return (_elastic(support, penetration) * along).sum(axis=1)
+    ahead, behind = radial_gap(support.profile, gap_m, np.array([angle, angle + np.pi]))
+    depth = np.abs(moved) - np.where(moved >= 0.0, ahead, behind)
+    return np.sign(moved) * _elastic(support, np.maximum(depth, 0.0))
+
+
+def _elastic(support: ConfigPart, penetration: np.ndarray) -> np.ndarray:
+    """Return the elastic force in N of a penetration in m."""
+    if support.hertz_N_per_m15 != 0.0:
+        return support.hertz_N_per_m15 * penetration**1.5
+    return float(np.sum(support.stiffness_N_per_m)) * penetration

@@ -1,7 +1,7 @@
 """The contact points of the supports: places, directions and shares of the support's stiffness."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -52,44 +52,42 @@ def place_contact_points(centreline: Centreline, supports: Sequence[ConfigPart])
     if not supports:
         return contacts_at_points(supports)
     places = [contact_places(centreline, support) for support in supports]
-    _require_apart(supports, places)
-    # A lattice has its points once per pair of bars.
-    pairs = [len(at) // support.points for at, support in zip(places, supports, strict=True)]
-    stiffness = [
-        np.tile(_per_point(support, "stiffness_N_per_m", share=True), count)
-        for support, count in zip(supports, pairs, strict=True)
+    order = sorted(range(len(places)), key=lambda number: places[number][0])
+    for lower, upper in zip(order[:-1], order[1:], strict=True):
+        if places[lower][-1] > places[upper][0] + SAME_PLACE_M:  # they may meet
+            raise ValueError(
+                f"supports {supports[lower].name} and {supports[upper].name} overlap on the tube:"
+                " move one of them"
+            )
+    parts = [
+        _points_of(centreline, support, number, at)
+        for number, (support, at) in enumerate(zip(supports, places, strict=True))
     ]
-    arc_length = np.concatenate(places)
+    columns = [field.name for field in fields(ContactPoints)]
     return ContactPoints(
-        arc_length=arc_length,
-        position=np.array([centreline.position(place) for place in arc_length]),
-        directions=np.concatenate(
-            [
-                _directions(centreline, support, at)
-                for support, at in zip(supports, places, strict=True)
-            ]
-        ),
-        weight=np.concatenate([values / values.sum() for values in stiffness]),
-        support=np.repeat(np.arange(len(supports)), [len(points) for points in places]),
-        pair=np.concatenate(
-            [
-                np.repeat(np.arange(count), support.points)
-                for support, count in zip(supports, pairs, strict=True)
-            ]
-        ),
-        stiffness=np.concatenate(stiffness),
-        gap_factor=np.concatenate(
-            [
-                np.tile(_per_point(support, "gap_factor"), count)
-                for support, count in zip(supports, pairs, strict=True)
-            ]
-        ),
-        centre_offset=np.concatenate(
-            [
-                np.tile(_offsets(support), (count, 1))
-                for support, count in zip(supports, pairs, strict=True)
-            ]
-        ),
+        *(np.concatenate([getattr(part, name) for part in parts]) for name in columns)
+    )
+
+
+def _points_of(
+    centreline: Centreline, support: ConfigPart, number: int, places: np.ndarray
+) -> ContactPoints:
+    """Return the ContactPoints of the support with a number, at arc lengths in m."""
+    pairs = len(places) // support.points  # a lattice has its points once per pair of bars
+    stiffness = _per_point(support, "stiffness_N_per_m")
+    if np.ndim(support.stiffness_N_per_m) == 0:  # the total of the support
+        stiffness = stiffness / support.points
+    stiffness = np.tile(stiffness, pairs)
+    return ContactPoints(
+        arc_length=places,
+        position=np.array([centreline.position(place) for place in places]),
+        directions=_directions(centreline, support, places),
+        weight=stiffness / stiffness.sum(),
+        support=np.full(len(places), number),
+        pair=np.repeat(np.arange(pairs), support.points),
+        stiffness=stiffness,
+        gap_factor=np.tile(_per_point(support, "gap_factor"), pairs),
+        centre_offset=np.tile(_per_point(support, "centre_offset_m", 1), (pairs, 1)),
     )
 
 
@@ -129,24 +127,25 @@ def contact_laws(supports: Sequence[ConfigPart], contact: ContactPoints) -> Cont
     contact: their contact points.
     """
     share = contact.weight * _pairs_of_bars(contact)[contact.support]
+    own = [supports[number] for number in contact.support]
     columns = {
-        column: np.array(
-            [value(supports[number], share[point]) for point, number in enumerate(contact.support)],
-            dtype=float,
-        )
-        for column, value in LAW_COLUMNS.items()
+        "gap": np.array([_gap(support) for support in own], dtype=float),
+        "damping": share * [support.damping_N_s_per_m for support in own],
+        "hunt_crossley": np.array([support.hunt_crossley_s_per_m for support in own], dtype=float),
+        "hertz": share * [support.hertz_N_per_m15 for support in own],
+        "friction": np.array([support.friction for support in own], dtype=float),
+        "stick_stiffness": contact.stiffness * [support.stick_stiffness_ratio for support in own],
     }
-    columns["stick_stiffness"] = contact.stiffness * [
-        supports[number].stick_stiffness_ratio for number in contact.support
-    ]
     shapes = [
-        (supports[number].profile, contact.directions[point], int(contact.pair[point]))
-        for point, number in enumerate(contact.support)
+        (support.profile, contact.directions[point], int(contact.pair[point]))
+        for point, support in enumerate(own)
     ]
     rounded = np.array([lobes(profile, directions) for profile, directions, _ in shapes])
     columns |= zip(("lobes", "lobe_depth", "lobe_angle"), rounded.reshape(-1, 3).T, strict=True)
     lands = [land_normals(*shape) for shape in shapes]
-    extra = [land_extra_gaps(own[0], len(land)) for own, land in zip(shapes, lands, strict=True)]
+    extra = [
+        land_extra_gaps(each.profile, len(land)) for each, land in zip(own, lands, strict=True)
+    ]
     return ContactLaws(
         **{name: np.reshape(values, len(contact.support)) for name, values in columns.items()},
         land_point=np.repeat(np.arange(len(lands)), [len(normals) for normals in lands]),
@@ -163,16 +162,6 @@ def contact_preload(supports: Sequence[ConfigPart], contact: ContactPoints) -> n
     share = contact.weight * _pairs_of_bars(contact)[contact.support]
     totals = [supports[number].preload_N or 0.0 for number in contact.support]
     return np.array(totals).reshape(-1) * share
-
-
-# column of ContactLaws -> its value from (support, share of the support that the point carries)
-LAW_COLUMNS = {
-    "gap": lambda support, share: _gap(support),
-    "damping": lambda support, share: support.damping_N_s_per_m * share,
-    "hunt_crossley": lambda support, share: support.hunt_crossley_s_per_m,
-    "hertz": lambda support, share: support.hertz_N_per_m15 * share,
-    "friction": lambda support, share: support.friction,
-}
 
 
 def _gap(support: ConfigPart) -> float:
@@ -212,42 +201,17 @@ def _directions(centreline: Centreline, support: ConfigPart, places: np.ndarray)
     )
 
 
-def _per_point(support: ConfigPart, key: str, share: bool = False) -> np.ndarray:
-    """Return (contact_point,) values of a key that is a list or a number.
+def _per_point(support: ConfigPart, key: str, axes: int = 0) -> np.ndarray:
+    """Return (contact_point, ...) values of a key that is a list, or one value for all points.
 
-    share: divide a number by the number of points.
+    axes: of one value. Raises ValueError for a list of another length.
     """
     given = np.asarray(getattr(support, key), dtype=float)
-    if given.ndim == 0:
-        return np.full(support.points, given / support.points if share else given)
-    _require_length(support, key, given)
-    return given
-
-
-def _offsets(support: ConfigPart) -> np.ndarray:
-    """Return (contact_point, 2) centre offsets in m along the two transverse directions."""
-    given = np.asarray(support.centre_offset_m, dtype=float)
-    if given.ndim == 1:
-        return np.tile(given, (support.points, 1))
-    _require_length(support, "centre_offset_m", given)
-    return given
-
-
-def _require_length(support: ConfigPart, key: str, given: np.ndarray) -> None:
-    """Raise ValueError unless there is one entry per contact point of a support."""
+    if given.ndim == axes:
+        return np.repeat(given[None], support.points, axis=0)
     if len(given) != support.points:
         raise ValueError(
             f"support {support.name}: {key} has {len(given)} values for {support.points} points:"
             " give one per point"
         )
-
-
-def _require_apart(supports: Sequence[ConfigPart], places: list[np.ndarray]) -> None:
-    """Raise ValueError when two supports share a stretch of the tube."""
-    order = sorted(range(len(places)), key=lambda number: places[number][0])
-    for lower, upper in zip(order[:-1], order[1:], strict=True):
-        if places[lower][-1] > places[upper][0] + SAME_PLACE_M:  # they may meet
-            raise ValueError(
-                f"supports {supports[lower].name} and {supports[upper].name} overlap on the tube:"
-                " move one of them"
-            )
+    return given

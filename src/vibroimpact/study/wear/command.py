@@ -70,7 +70,6 @@ def run(options: argparse.Namespace) -> int:
     from vibroimpact.io.records import RecordError, write_table
 
     from .life import NoWear
-    from .of_study import wear_life
 
     try:
         named = Path("results") / options.study
@@ -112,6 +111,24 @@ def _wear(options: argparse.Namespace, configuration: Path) -> "Wear":
                 for problem in error.errors()
             )
         ) from error
+
+
+def wear_life(folder: Path, wear: "Wear") -> "list[WearRow]":
+    """Return the WearRows of a study's folder.
+
+    Raises NoWear, ConfigError, and RecordError if a record is missing or of another configuration
+    than config.yaml there.
+    """
+    from vibroimpact.config.reading import load_config
+    from vibroimpact.study.own_results import usable_records
+    from vibroimpact.study.run_files import CONFIG_FILE
+
+    from .life import NoWear, wear_rows
+
+    if not any((folder / "records").glob("*.nc")):
+        raise NoWear(f"{folder / 'records'}: there are no records: give the results of a study")
+    config = load_config(folder / CONFIG_FILE)
+    return wear_rows(config, usable_records(folder, config), wear)
 
 
 def as_text(rows: "Sequence[WearRow]", years: float) -> str:

@@ -1,7 +1,5 @@
 """A sensor that is left free: its prediction by the others, held to their measurement."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 

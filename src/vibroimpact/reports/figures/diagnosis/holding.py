@@ -1,7 +1,5 @@
 """The holding force by place: by sensor, band and level, for both states of the model."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 

@@ -1,7 +1,5 @@
 """The law that records demand at supports and local elements, against the model's."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 
@@ -10,7 +8,7 @@ from vibroimpact.reports.figures.plot import Axis, Bars, Mark, Panel, Plot, Seri
 from vibroimpact.reports.figures.sheet import WIDTH_IN
 from vibroimpact.reports.figures.style import BLACK, GREY, PALE
 
-from .states import AS_GIVEN, COLOURS, before_and_after, level_in_words, percent, shown_states
+from .states import AS_GIVEN, COLOURS, level_in_words, percent, shown_states
 
 MOST_UNSEEN = 12  # bars of places
 MOST_PLACES = 3  # supports and elements
@@ -48,8 +46,8 @@ def law_figure(evidence: xr.Dataset) -> Plot:
     panels = _panels(evidence, told)
     states = shown_states(evidence)
     errors = [force_error(evidence, state, told) for state, _ in states]
-    words = ("model as given", "completed")
-    title = f"Demanded forces: error of {before_and_after(errors, words)}"
+    told_errors = zip(("model as given", "completed"), map(percent, errors), strict=False)
+    title = f"Demanded forces: error of {', '.join(map(' '.join, told_errors))}"
     owned: dict[str, list[str]] = {}  # a row of panels per support if one has several
     for key, places in panels.items():
         owned.setdefault(str(evidence["owner_name"].values[places[0]]), []).append(key)

@@ -2,8 +2,6 @@
 channels, and the places marked.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 

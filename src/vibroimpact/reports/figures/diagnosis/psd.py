@@ -1,7 +1,5 @@
 """Measured spectra and those of free runs, with the model as given and completed."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -64,7 +62,7 @@ def _gap(psd):
     apart = 10.0 * np.log10(values[0] / values[1])
     counted = np.isfinite(apart) & (values[0] > LOWEST * values[0].max(axis=-1, keepdims=True))
     power = np.nan_to_num(values).max(axis=0).mean(axis=-1)
-    kinds = np.array([_kind(psd, channel) for channel in range(power.shape[-1])])
+    kinds = psd["channel_kind"].values
     largest = [power[:, kinds == kind].max(axis=-1) for kind in kinds]
     moves = power > MOVES * np.transpose(largest)
     sums = np.sum(np.where(counted, apart, 0.0) ** 2, axis=-1)
@@ -112,15 +110,11 @@ def _panel(psd, record, channel, completed):
         tags = {"record": name, "channel": sensor}
         items.append(Series(label, frequency[shown], values[row], tags, **look))
     drawn = values[: len(curves)]
-    level = Axis(PSD_COLUMNS.get(SI_OF_KIND.get(_kind(psd, channel), ""), "psd_unit2_per_Hz"), True)
+    unit_SI = SI_OF_KIND.get(str(psd["channel_kind"].values[channel]), "")
+    level = Axis(PSD_COLUMNS.get(unit_SI, "psd_unit2_per_Hz"), True)
     largest = np.nanmax(drawn)
     if largest > 0.0:
         least = max(np.nanmin(np.where(drawn > 0.0, drawn, np.nan)), BELOW * largest)
         level = replace(level, low=0.5 * least, high=2.0 * largest)
     title = f"{sensor}\n{name}{held}\n{load:.3g} {unit} RMS"
     return Panel(Axis("frequency_Hz", True), level, items, title)
-
-
-def _kind(psd, channel):
-    """Return the kind of a channel, empty if it is not known."""
-    return str(psd["channel_kind"].values[channel]) if "channel_kind" in psd else ""

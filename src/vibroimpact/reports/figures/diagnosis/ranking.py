@@ -1,7 +1,5 @@
 """The probabilities of the explanations."""
 
-from __future__ import annotations
-
 from vibroimpact.diagnosis.verdict.content import Verdict, not_run_sentence
 from vibroimpact.reports.explanations import chance_text, explanations_of, not_explained
 from vibroimpact.reports.figures.plot import Axis, Bars, Panel, Plot

@@ -1,7 +1,5 @@
 """All figures of a diagnosis."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import xarray as xr

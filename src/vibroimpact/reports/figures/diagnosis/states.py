@@ -1,7 +1,5 @@
 """The model as given and the completed one, as the figures of a diagnosis show them."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 
@@ -40,8 +38,3 @@ def percent(share: float) -> str:
     if not np.isfinite(share):
         return "-"
     return "over 200 %" if share > 2.0 else f"{100.0 * share:.{1 if share < 0.095 else 0}f} %"
-
-
-def before_and_after(values: list[float], words: tuple[str, str]) -> str:
-    """Return "as given 47 %, completed 12 %" of one or two shares; words: of the two states."""
-    return ", ".join(f"{word} {percent(value)}" for word, value in zip(words, values, strict=False))

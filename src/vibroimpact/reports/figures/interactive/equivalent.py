@@ -1,17 +1,17 @@
 """Equivalent k and c against load: the recommended values, and those of every method."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from itertools import product
 from typing import Any
 
 import numpy as np
 
-from vibroimpact.reports.equivalent_answer import COMPARED, Answer, Value, places_of
+from vibroimpact.reports.equivalent_answer import Answer, Value, places_of
 from vibroimpact.reports.figures.plot import Axis, Panel, Series, extent
-from vibroimpact.reports.figures.study.equivalent import COLUMNS, PREDICTED, look_of
+from vibroimpact.reports.figures.study.equivalent import PREDICTED, look_of
 from vibroimpact.reports.figures.style import GREY
+from vibroimpact.study.equivalent_table import VALUES
+from vibroimpact.study.method_agreement import COMPARED, COMPARED_OF
 from vibroimpact.study.reasons import UNITS
 
 from .page_plot import PagePlot, unit_of
@@ -29,7 +29,7 @@ def equivalent_plots(
     summary: rows of consistency_summary.csv.
     loads: of all plots of the page.
     """
-    return [_against_load(quantity, answers, summary, loads) for quantity in COLUMNS]
+    return [_against_load(quantity, answers, summary, loads) for quantity in VALUES]
 
 
 def _against_load(quantity, answers, summary, loads):
@@ -47,12 +47,12 @@ def _against_load(quantity, answers, summary, loads):
             loads_of, bounds = [row.load_rms_N for row in bounded], [row.bound for row in bounded]
             look["hover"] = [row.k.reason for row in bounded]
             found[gap, pair].append(Series("upper bound", loads_of, bounds, **look))
-    axis = Axis(COLUMNS[quantity])
+    axis = Axis(VALUES[quantity])
     if quantity == "k":
         # Predictions go down to nothing at low loads; they would flatten the rest.
         items = [item for own in found.values() for item in own]
         low, _ = extent([y for item in items if item.curve not in PREDICTED for y in item.y], True)
-        axis = Axis(COLUMNS["k"], True, low, extent([y for item in items for y in item.y], True)[1])
+        axis = Axis(VALUES["k"], True, low, extent([y for item in items for y in item.y], True)[1])
     return PagePlot(
         f"equivalent_{quantity}",
         f"Equivalent {WORDS[quantity]} {quantity}",
@@ -95,7 +95,7 @@ def _recommended(quantity: str, own: Sequence[Answer], load_unit: str) -> Iterat
 
 def _methods(quantity: str, rows: Sequence[dict]) -> Iterator[Series]:
     """Yield the curve of each method that has values, the compared methods last: on top."""
-    for method in sorted({row["method"]: 0 for row in rows}, key=COMPARED["k"].__contains__):
+    for method in sorted({row["method"]: 0 for row in rows}, key=COMPARED.__contains__):
         table = [
             row
             for row in rows
@@ -110,6 +110,6 @@ def _methods(quantity: str, rows: Sequence[dict]) -> Iterator[Series]:
         )
         predicted = method in PREDICTED
         ends: Any = (None, None) if predicted else (low, high)
-        hidden = not predicted and method not in COMPARED[quantity]
+        hidden = not predicted and method not in COMPARED_OF[quantity]
         look = look_of(method) | {"size": None, "hidden": hidden}
         yield Series(method, [row["load_rms_N"] for row in table], middle, {}, *ends, **look)

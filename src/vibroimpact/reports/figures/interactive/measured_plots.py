@@ -1,7 +1,5 @@
 """The plots of the page of a measured tube: those of a study, and its stabilisation charts."""
 
-from __future__ import annotations
-
 from vibroimpact.equivalent_support.measured.equivalent_of import MeasuredSupports
 from vibroimpact.reports.figures.study.psd_table import driven_sensor
 from vibroimpact.reports.figures.study.stabilisation import chart_panel

@@ -1,7 +1,5 @@
 """A plot of a page: a figure of plotly.js for each position of the controls of the page."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

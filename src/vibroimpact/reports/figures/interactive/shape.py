@@ -1,7 +1,5 @@
 """The deflection shape along the tube at any load, animated."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The spectrum of the response at any load: mean over segments and seeds, and their extremes."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Contact, wear and stress of each support against load, and the energy balance of every case."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from itertools import product
 from typing import Any

@@ -1,7 +1,5 @@
 """The plots of a study's page, by section, and the controls that they follow."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from itertools import product
 from typing import Any, NamedTuple

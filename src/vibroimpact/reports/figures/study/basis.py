@@ -1,7 +1,5 @@
 """Accuracy of the reduced model, and the contribution of each family of basis vectors."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from vibroimpact.reports.figures.plot import Axis, Panel, Plot, Series

@@ -1,7 +1,5 @@
 """Broadband PSD: target, best linear equivalent and range of linear responses (figure 12)."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.signal import find_peaks
 

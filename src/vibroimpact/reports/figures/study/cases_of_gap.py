@@ -1,7 +1,5 @@
 """The cases that a figure of one gap shows: those of the largest gap, and a few of the loads."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Checks of the simulation: energy balance, contact statistics and stress against load."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any

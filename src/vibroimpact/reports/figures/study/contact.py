@@ -1,7 +1,5 @@
 """The contact law and its discretisation (figure 3), and the number of points (figure 4)."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from vibroimpact.config.stage_settings import StageSettings
@@ -29,9 +27,13 @@ from vibroimpact.reports.figures.style import (
     gap_label,
     number,
 )
-from vibroimpact.structure.contact.outline import facing_angle, radial_gap
+from vibroimpact.structure.contact.outline import (
+    facing_angle,
+    radial_gap,
+    static_force,
+    support_gap,
+)
 from vibroimpact.structure.contact.profiles import with_plain_profiles
-from vibroimpact.structure.contact.static_law import static_force, support_gap
 
 from .linear_limits import HELD, driven_frequencies
 

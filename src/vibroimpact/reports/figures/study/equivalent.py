@@ -1,7 +1,5 @@
 """The equivalent support: k and c against load (figure 13) and against load over gap."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
@@ -18,12 +16,12 @@ from vibroimpact.reports.figures.style import (
     OPEN_METHODS,
     gap_label,
 )
+from vibroimpact.study.equivalent_table import VALUES
 from vibroimpact.study.method_agreement import COMPARED, collapse_rows, summary_rows
 
 from .linear_limits import contact_stiffness
 from .seed_scatter import grouped, medians, over_seeds, spread
 
-COLUMNS = {"k": "k_N_per_m", "c": "c_N_s_per_m"}
 PREDICTED = ("statistical_linearisation", "secant")
 DRAWN = {"k": tuple(METHODS), "c": (*OPEN_METHODS, "lscf", "broadband")}
 HIGHEST_K = 2e7  # N/m, of the axis
@@ -65,7 +63,7 @@ def figure_13_equivalent_support(config, model, rows, level="load_rms_N", study=
     loads = Axis(level, True, *extent([row["load_rms_N"] for row in rows], log=True))
     across = -(-len(places) * len(gaps) // -(-len(places) * len(gaps) // MOST_COLUMNS))
     lowest = config.identification.stiffness_range_N_per_m[0]
-    level_of_k = Axis(COLUMNS["k"], True, 0.5 * lowest, HIGHEST_K)
+    level_of_k = Axis(VALUES["k"], True, 0.5 * lowest, HIGHEST_K)
     panels: dict[str, Panel] = {}
     for place in places:
         limit, name = contact_stiffness(model, place[0]), "contact stiffness"
@@ -75,9 +73,9 @@ def figure_13_equivalent_support(config, model, rows, level="load_rms_N", study=
         items = {
             (gap, name): [*_study_curve(beside[gap], column), *_methods(own[gap], name, level)]
             for gap in gaps
-            for name, column in COLUMNS.items()
+            for name, column in VALUES.items()
         }
-        level_of_c = Axis(COLUMNS["c"], False, *extent(_values(items[gap, "c"] for gap in gaps)))
+        level_of_c = Axis(VALUES["c"], False, *extent(_values(items[gap, "c"] for gap in gaps)))
         for gap in gaps:
             top, bottom = (f"{name}, {' in '.join(place)}, gap {gap:.5g} m" for name in "kc")
             inner, why = bool(len(panels) // 2 % across), _why_empty(own[gap])
@@ -121,7 +119,7 @@ def _study_curve(rows, column):
 
 def _methods(rows, quantity, level):
     """Return one quantity by every method: predictions as lines, others with their range."""
-    column, found = COLUMNS[quantity], []
+    column, found = VALUES[quantity], []
     table = [{**row, level: row["load_rms_N"]} for row in rows]
     for method in DRAWN[quantity]:
         chosen = [row for row in table if row["method"] == method]
@@ -135,7 +133,7 @@ def _methods(rows, quantity, level):
 
 def _predicted(rows, x, method, **look: Any):
     """Return the line of k by a method that needs no response, in a list, empty without values."""
-    place, value = medians(rows, x, COLUMNS["k"])
+    place, value = medians(rows, x, VALUES["k"])
     return [Series(method, place, value, **(look_of(method) | look))] if place.size else []
 
 
@@ -189,11 +187,11 @@ def collapse(config, model, rows):
         damping = _of_gaps(config, own, "c")
         shown = [value for item in [*stiffness, *damping] for value in item.x]
         loads = Axis(x, True, *extent(shown, log=True))
-        level = Axis(COLUMNS["k"], True, 0.5 * lowest, 2.5 * contact_stiffness(model))
+        level = Axis(VALUES["k"], True, 0.5 * lowest, 2.5 * contact_stiffness(model))
         name, zero = " in ".join(place), Mark("", "y", 0.0, colour=GREY, width=0.8)
         title = f"damping{of}" if of else "damping on top of the modal damping"
         panels[f"k, {name}"] = Panel(loads, level, stiffness, f"stiffness{of}", why)
-        panels[f"c, {name}"] = Panel(loads, Axis(COLUMNS["c"]), [*damping, zero], title, why)
+        panels[f"c, {name}"] = Panel(loads, Axis(VALUES["c"]), [*damping, zero], title, why)
     pairs = in_rows(list(panels), 2)
     size = (7.6, 1.0 + 3.2 * len(places))
     return Plot("collapse", _collapse_title(rows), caption, panels, pairs, size, legend=3)
@@ -216,7 +214,7 @@ def _of_gaps(config, rows, quantity):
     found, x, tags = [], "load_over_gap_N_per_m", ("gap_m", "load_rms_N")
     for gap, look in looks_of_gaps(config, [row["gap_m"] for row in rows]):
         own = [row for row in rows if row["gap_m"] == gap and row["method"] in COMPARED]
-        found += over_seeds(own, x, COLUMNS[quantity], "identified", tags, line="", **look)
+        found += over_seeds(own, x, VALUES[quantity], "identified", tags, line="", **look)
     return found
 
 

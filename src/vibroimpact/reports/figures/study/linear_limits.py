@@ -1,7 +1,5 @@
 """The linear limits of the tube: without contact, in full contact and held; and the shown band."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy import linalg
 

@@ -1,8 +1,5 @@
 """The figures of a measured tube's equivalent supports: 5, 6 and 13."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -24,21 +21,9 @@ from .response import figure_06_levels
 SAME_GAP = 0.02  # largest relative difference of gaps whose spectra are drawn over each other
 
 
-@dataclass(frozen=True)
-class StudyBeside:
-    """The results of a study of the same tube.
-
-    config: its configuration. rows: of its consistency.csv. spectra: paths, named after cases.
-    """
-
-    config: object
-    rows: list
-    spectra: list
-
-
 def study_beside(config, folder):
-    """Return the StudyBeside of a folder of results, None if it holds no finished study, or one
-    of another configuration.
+    """Return (configuration, rows of consistency.csv, paths of spectra) of the study of the same
+    tube in a folder; None if it holds no finished study, or one of another configuration.
     """
     table = Path(folder) / "consistency.csv"
     if config.identification is None or not table.is_file():
@@ -47,11 +32,11 @@ def study_beside(config, folder):
     if {row.get(DIGEST_COLUMN, own) for row in rows} != {own}:
         return None
     paths = sorted(map(str, (Path(folder) / "spectra").glob("*.nc")))
-    return StudyBeside(config, rows, paths)
+    return config, rows, paths
 
 
 def measured_figures(found, beside=None):
-    """Return the Plots of a MeasuredSupports; beside: StudyBeside or None."""
+    """Return the Plots of a MeasuredSupports; beside: of study_beside."""
     config, model, level = found.config, found.model, found.levels
     responses, gap = gather(config, model, found.spectra.values()), shown_gap(config)
     beside = beside if level == "load_rms_N" else None
@@ -66,7 +51,7 @@ def measured_figures(found, beside=None):
         f" left out. The shape carries no damping.{over if beside else ''} Dashed: the contact"
         " stiffness of the model, the upper limit."
     )
-    study = _study_rows(found, beside) if beside else None
+    study = _study_rows(found, beside[1]) if beside else None
     simulated = _simulated(found, beside, gap) if beside else None
     return [
         figure_13_equivalent_support(config, model, found.rows, level, study, caption),
@@ -94,12 +79,12 @@ def _supports(found, gap):
     }
 
 
-def _study_rows(found, beside):
+def _study_rows(found, study):
     """Return {gap of the campaign: rows of the study's nearest gap, at the same load over gap}.
 
     If a model has effects with a scale of their own, only the same gap is comparable.
     """
-    gaps = sorted({row["gap_m"] for row in beside.rows})
+    gaps = sorted({row["gap_m"] for row in study})
     fixed = bool(effects_with_a_scale(found.model))
     rows = {}
     for gap in found.config.grid.gap_m:
@@ -108,7 +93,7 @@ def _study_rows(found, beside):
             continue
         rows[gap] = [
             {**row, "load_rms_N": row["load_rms_N"] * gap / nearest}
-            for row in beside.rows
+            for row in study
             if row["gap_m"] == nearest
         ]
     return rows
@@ -116,19 +101,20 @@ def _study_rows(found, beside):
 
 def _simulated(found, beside, gap):
     """Return the Responses of the study at the gap and sensor of figure 5, None without these."""
-    same = [each for each in beside.config.grid.gap_m if abs(each / gap - 1.0) < SAME_GAP]
-    point = beside.config.identification.response_point
+    studied, _, spectra = beside
+    same = [each for each in studied.grid.gap_m if abs(each / gap - 1.0) < SAME_GAP]
+    point = studied.identification.response_point
     at = found.model.sensor_names.index(
         driven_sensor(found.config, found.config.identification.response_point)
     )
-    place = beside.config.points.get(point, (np.nan,) * 3)
+    place = studied.points.get(point, (np.nan,) * 3)
     away = np.linalg.norm(found.model.sensor_positions[at] - np.array(place))
-    axis = driven_axis(beside.config.excitation.direction)
-    paths = [path for path in beside.spectra if case_from_id(Path(path).stem).gap_m in same]
+    axis = driven_axis(studied.excitation.direction)
+    paths = [path for path in spectra if case_from_id(Path(path).stem).gap_m in same]
     if not paths or not away < 0.01 or axis != driven_axis(found.config.excitation.direction):
         return None
-    config = beside.config.model_copy(
-        update={"grid": beside.config.grid.model_copy(update={"gap_m": tuple(same)})}
+    config = studied.model_copy(
+        update={"grid": studied.grid.model_copy(update={"gap_m": tuple(same)})}
     )
     whole = gather(config, found.model, spectra_shown(config, paths, read_case))
     name = driven_sensor(config, point)

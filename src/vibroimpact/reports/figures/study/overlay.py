@@ -1,7 +1,5 @@
 """A campaign and the simulation: PSD of acceleration at the response point (figure 5)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

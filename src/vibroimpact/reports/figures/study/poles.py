@@ -1,7 +1,5 @@
 """The pole of the main peak: its width and the poles against load (figure 9)."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The spectra that figures need, gathered file by file with one file in memory at a time."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

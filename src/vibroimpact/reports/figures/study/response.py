@@ -1,7 +1,5 @@
 """Responses against load: maps (figures 6 and 8), PSDs (figure 7), and the in-plane share."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Values of many cases against one quantity: median over seeds (and supports), range as a bar."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

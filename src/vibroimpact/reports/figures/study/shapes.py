@@ -1,7 +1,5 @@
 """Deflection shapes along the tube (figure 10), and the singular values behind them (figure 11)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The stabilisation chart of LSCF: poles by model order over the spectrum (figure 9)."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from vibroimpact.identify.stabilisation import STABLE_DAMPING, STABLE_FREQUENCY

@@ -1,7 +1,5 @@
 """A support from the side and in section, with the profile of its hole (figure 1)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -9,8 +7,12 @@ from matplotlib.patches import Circle, Polygon, Rectangle
 
 from vibroimpact.geometry.sections import outer_width, section_kind
 from vibroimpact.reports.figures.style import BLACK, GREY, ORANGE, PALE, RED, number, shown
-from vibroimpact.structure.contact.outline import facing_angle, hole_outline, radial_gap
-from vibroimpact.structure.contact.static_law import support_gap
+from vibroimpact.structure.contact.outline import (
+    facing_angle,
+    hole_outline,
+    radial_gap,
+    support_gap,
+)
 
 SCALES = (10.0, 5.0, 2.0, 1.0)  # a gap to scale would be thinner than the lines
 WIDEST = 0.8  # largest drawn clearance, as a fraction of the tube's radius

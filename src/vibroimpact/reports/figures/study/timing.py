@@ -1,7 +1,5 @@
 """The time of a study: CPU time by rule and part."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from vibroimpact.reports.figures.plot import Axis, Bars, Panel, Plot, Text

@@ -1,7 +1,5 @@
 """The tube: layout with supports, points and sensors (figure 1), and free modes (figure 2)."""
 
-from __future__ import annotations
-
 import re
 import textwrap
 

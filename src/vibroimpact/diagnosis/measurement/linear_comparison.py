@@ -1,23 +1,26 @@
 """Measured frequency responses against those of a linear model: modes, channels, units."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
 from vibroimpact.campaign.base_motion import relative_to_base
 from vibroimpact.campaign.checks.model_comparison import compare_with_model
-from vibroimpact.campaign.file import Channel, Level, campaign_dataset
-from vibroimpact.campaign.importing.frf import FrequencyResponses
+from vibroimpact.campaign.file import Channel, Level, campaign_dataset, read_campaign
+from vibroimpact.campaign.importing.frf import read_frfs
 from vibroimpact.campaign.signals import Transfer, campaign_signals, transfer_or_reason
+from vibroimpact.config.reading import load_config
 from vibroimpact.config.schema import Config
-from vibroimpact.diagnosis.measurement.attached_model import attach
 from vibroimpact.identify.ods import mac
 from vibroimpact.identify.stabilisation import stable_poles
 from vibroimpact.io.units import SI_OF_KIND, TIME_DERIVATIVES
 from vibroimpact.reduction.modal_model import ModalModel
+
+from .attached_model import attach
+from .comparable import comparison_problems
 
 MANY = 1000  # averages of a frequency response whose number is not stated
 NEGLIGIBLE = 0.01  # of the response of every channel: a pole with less is not a mode
@@ -36,33 +39,42 @@ class NotComparable(ValueError):
     """Responses that allow no linear comparison; the message says why."""
 
 
-def described(responses: FrequencyResponses) -> tuple[xr.Dataset, Transfer]:
-    """Return (campaign without signals, Transfer) of FrequencyResponses."""
-    channels = [
-        Channel(each.name, each.point, each.direction, SI_OF_KIND[each.kind], each.kind)
-        for each in responses.channels
-    ]
-    drive = responses.drive
+def compared(path: str | Path, model: str | Path, is_campaign: bool) -> list[str]:
+    """Return the comparison of measured responses with the linear model of a configuration file, as
+    lines for a terminal.
+
+    path: of a campaign, or of a universal file with frequency responses.
+    Raises NotComparable, ImportProblem, RecordError, CampaignError, ConfigError.
+    """
+    config = load_config(model)
+    if is_campaign:
+        campaign = read_campaign(path)
+        spectra = _lowest_responses(campaign)
+    else:
+        campaign, spectra = described(*read_frfs(path))
+    problems = comparison_problems(config, campaign)
+    if problems:
+        raise NotComparable("\n".join(problems))
+    return _as_text(*linear_comparison(config, campaign, spectra))
+
+
+def described(
+    frequency: np.ndarray, h1: np.ndarray, responses: Sequence[Channel], drive: Channel
+) -> tuple[xr.Dataset, Transfer]:
+    """Return (campaign without signals, Transfer) of responses to one force, as of read_frfs."""
+    channels = [replace(each, units=SI_OF_KIND[each.kind]) for each in responses]
     name = f"{drive.name} force" if drive.name in {each.name for each in channels} else drive.name
-    force = Channel(name, drive.point, drive.direction, "N", drive.kind)
+    force = replace(drive, name=name, units="N")
     silent = np.zeros((1, len(channels), 2))
     campaign = campaign_dataset(
         silent[:, :1], silent, channels, [force], [Level("responses", np.nan)], 1.0
     )
-    power = np.sum(np.abs(responses.h1) ** 2, axis=-1)
-    spectra = Transfer(
-        responses.frequency,
-        responses.h1,
-        np.ones(responses.h1.shape),
-        power,
-        np.ones_like(power),
-        MANY,
-        float(responses.frequency[0]),
-    )
+    power, all_of = np.sum(np.abs(h1) ** 2, axis=-1), np.ones(h1.shape)
+    spectra = Transfer(frequency, h1, all_of, power, all_of[:, 0], MANY, float(frequency[0]))
     return campaign, spectra
 
 
-def lowest_responses(campaign: xr.Dataset) -> Transfer:
+def _lowest_responses(campaign: xr.Dataset) -> Transfer:
     """Return the Transfer of the record of the lowest load. Raises NotComparable."""
     measured = relative_to_base(campaign_signals(campaign))
     record = measured.lowest()
@@ -136,7 +148,7 @@ def _real_residues(lines: np.ndarray, h1: np.ndarray) -> np.ndarray:
     return np.linalg.lstsq(columns / scale, np.hstack([h1.real, h1.imag]))[0] / scale
 
 
-def comparison_text(modes: list[dict], checks: list[dict]) -> list[str]:
+def _as_text(modes: list[dict], checks: list[dict]) -> list[str]:
     """Return a linear comparison as lines for a terminal."""
     lines = ["measured              model                 difference   MAC"]
     for row in modes:

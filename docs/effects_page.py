@@ -1,7 +1,7 @@
 """The catalogue of effects as a page of the documentation."""
 
-from .effect import SCALES, TESTS, WHERE, Effect, Parameter
-from .registry import EFFECTS
+from vibroimpact.effects.effect import SCALES, TESTS, WHERE, Effect, Parameter
+from vibroimpact.effects.registry import EFFECTS
 
 
 def markdown() -> str:
