@@ -124,6 +124,12 @@ def test_an_effect_that_spoils_spectra_without_excess_is_nothing():
     assert found.verdict == "none" and found.nothing > 0.9 and not found.ranked
 
 
+def test_an_effect_that_spoils_spectra_by_chance_is_not_refuted():
+    named = decided(hypothesis(1.5, "contact_damping@all"))
+    assert beside_spectra(named, misfit(1.6, 2.0)).verdict == "unknown"
+    assert beside_spectra(named, misfit(1.6, 2.0), farther=False) == named
+
+
 def test_a_clear_gain_is_named():
     found = decided(hypothesis(1.5, "contact_damping@all"), hypothesis(0.7, "hunt_crossley@all"))
     assert found.verdict == "named" and found.best.ids == ("contact_damping",)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from vibroimpact.diagnosis.explanations import Point, Term
-from vibroimpact.diagnosis.free_runs import free_runs
+from vibroimpact.diagnosis.free_runs import CHANCE_RUNS, free_runs
 
 
 @pytest.fixture(scope="module")
@@ -56,6 +56,23 @@ def test_a_record_is_not_off_where_one_run_whirls_as_it_does(compared):
     whirling = compared.after.copy()
     whirling[:, 3] *= 10.0
     assert replace(compared, measured=whirling[:, 3].copy(), after=whirling).surely_off() == []
+
+
+def test_a_completion_is_farther_off_only_beyond_the_scatter_of_runs(compared):
+    records = range(len(compared.signals.load))
+    louder = replace(compared, after=4.0 * compared.after, measured=compared.before[:, 0])
+    assert louder.farther(records)
+    assert not replace(louder, after=compared.before).farther(records)
+    one = compared.after.copy()
+    one[:, 1:] *= 4.0  # as one of the completed model's runs
+    assert not replace(louder, after=one).farther(records)
+
+
+def test_repeated_runs_begin_with_the_first_ones(compared):
+    many = compared.repeated()
+    assert many.before.shape[1] == many.after.shape[1] == CHANCE_RUNS
+    np.testing.assert_array_equal(many.before[:, : compared.before.shape[1]], compared.before)
+    assert len(np.unique(many.before[-1, :, 0, 20])) == CHANCE_RUNS
 
 
 def test_nothing_added_closes_nothing(compared):

@@ -30,6 +30,13 @@ def test_closest_effect_is_shown_if_nothing_is_named():
     assert "best candidate" not in verdict_sentence(made_up_verdict("unknown"))
 
 
+def test_spectra_that_come_no_nearer_are_told_as_such():
+    given = made_up_verdict().to_values()["misfit"]["holdout"]
+    no_nearer = given | {"closed_fraction": -0.2}
+    told = verdict_sentence(made_up_verdict(misfit={"fit": None, "holdout": no_nearer}))
+    assert "are no nearer with it" in told and "closes" not in told
+
+
 def test_most_probable_of_several_is_shown():
     named = made_up_verdict().to_values()["effects"]
     page = discrepancy_page("campaign", made_up_verdict("ambiguous", most_probable=named), [])

@@ -147,6 +147,7 @@ def beside_spectra(
     decision: Decision,
     misfit: Mapping[str, float | None],
     parts: Sequence[Mapping[str, float | None]] = (),
+    farther: bool = True,
 ) -> Decision:
     """Return the Decision given the distances of free runs.
 
@@ -157,7 +158,7 @@ def beside_spectra(
 
     misfit: {before_dB, after_dB, floor_dB, closed_fraction} of held-out records, None if unknown.
     parts: the same of each record and channel: in a record, or across the force, whirling may be
-    chance.
+    chance. farther: whether a record is farther off after completion by more than chance.
     """
     before, after, floor = misfit["before_dB"], misfit["after_dB"], misfit["floor_dB"]
     if before is None or after is None or floor is None:
@@ -172,7 +173,7 @@ def beside_spectra(
         )
     if decision.verdict in ("none", "unknown"):
         return decision
-    if makes_worse(misfit):
+    if makes_worse(misfit) and farther:
         return refuted(decision, in_favour_of_nothing=closed is None)
     far = after - floor > 2.0 * constants.FREE_EXCESS_DB and (closed or 0.0) < constants.PARTLY
     far = far and _most_stay_off(parts or [misfit])

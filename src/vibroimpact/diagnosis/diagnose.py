@@ -342,10 +342,15 @@ def _concluded(
     """Return the Diagnosis of a campaign that was compared.
 
     An explanation that makes held-out records worse, or leaves them far off, is dropped: the
-    verdict is unknown and states it as withdrawn, or is none if there was no excess.
+    verdict is unknown and states it as withdrawn, or is none if there was no excess. More runs
+    confirm that this is not by chance.
     """
     misfits, effects, withdrawn = _misfits(found.runs), _effects(found), None
     decision = _verified(found, misfits)
+    if decision.best is not found.decision.best and found.runs.structure is not None:
+        found = replace(found, runs=found.runs.repeated())
+        misfits = _misfits(found.runs)
+        decision = _verified(found, misfits)
     if decision.verdict == "none" and effects:  # refuted, and nothing is missing
         found = replace(found, runs=found.runs.as_given)
         misfits, effects = _misfits(found.runs), []
@@ -385,7 +390,8 @@ def _verified(found: Grounds, misfits: dict[str, Any]) -> Decision:
             for record in range(len(signals.load))
             for k in channels
         ]
-        return beside_spectra(found.decision, told, each)
+        records = signals.holdout() if len(signals.holdout()) else signals.fit()
+        return beside_spectra(found.decision, told, each, found.runs.farther(records))
     worse = found.chosen is not None and makes_worse(told)
     return refuted(found.decision) if worse else found.decision
 

@@ -75,11 +75,33 @@ class FreeRuns:
         off = np.flatnonzero(self._beyond_chance() > most).tolist()
         if not off:
             return []
-        seeds = range(SEEDS, CHANCE_RUNS)
-        more = _psd(_simulated(self.structure, self.signals, self.point, off, seeds), self.signals)
-        many = replace(self, after=np.concatenate([self.after, more[1]], axis=1))
+        many = replace(self, after=self._with_more(self.after, self.point, off))
         beyond = many._beyond_chance() - most
         return [record for record in off if beyond[record] > 0.0]
+
+    def repeated(self) -> FreeRuns:
+        """Return the FreeRuns with CHANCE_RUNS of each record before and after completion: of a few
+        runs, chance can make either look nearer.
+        """
+        before = self._with_more(self.before, Point())
+        return replace(self, before=before, after=self._with_more(self.after, self.point))
+
+    def _with_more(self, spectra, point, records=None):
+        """Return spectra (record, seed, channel, line) of a Point with those of further seeds, up
+        to CHANCE_RUNS; NaN for other records than those given.
+        """
+        for first in range(SEEDS, CHANCE_RUNS, SEEDS):
+            seeds = range(first, first + SEEDS)
+            more = _simulated(self.structure, self.signals, point, records, seeds)
+            spectra = np.concatenate([spectra, _psd(more, self.signals)[1]], axis=1)
+        return spectra
+
+    def farther(self, records: Sequence[int] | np.ndarray) -> bool:
+        """Return whether the spectra of one of records are farther off after completion than
+        before, and farther than the runs of the completed model are from one another.
+        """
+        least = np.maximum(self.as_given._beyond_chance(), 0.0)
+        return bool(np.any((self._beyond_chance() > least)[records]))
 
     def _beyond_chance(self):
         """Return (record,) dB: distance of the measured spectra of a record from the mean of the
@@ -129,7 +151,7 @@ class FreeRuns:
         for name in ("before", "after"):
             power = self._cells[name][records][:, :, channels]
             floors.append(_floor(power, chosen))
-            own = floors[-1] * np.sqrt((1.0 - 1.0 / SEEDS) / 2.0)
+            own = floors[-1] * np.sqrt((1.0 - 1.0 / power.shape[1]) / 2.0)
             away.append(float(np.hypot(_rms(measured - _mean(power, axis=1), chosen), own)))
         return {
             "before_dB": away[0],

@@ -14,13 +14,7 @@ from .number_text import digits, percent
 
 def verdict_sentence(verdict: Verdict) -> str:
     """Return the verdict in one or two sentences."""
-    apart = verdict.misfit.holdout
-    closed = None if apart is None else apart.closed_fraction
-    shrinks = (
-        f" Adding it closes {percent(closed)} of the excess misfit on records that took no part."
-        if closed is not None
-        else ""
-    )
+    shrinks = _shrinks(verdict, "it")
     named = "; and ".join(map(_with_parameters, verdict.effects))
     own = _ids(verdict.effects)
     wanted = NOTHING if verdict.verdict == "none" else effects_in_words(own)
@@ -45,7 +39,7 @@ def verdict_sentence(verdict: Verdict) -> str:
         "ambiguous": (
             "One of these is missing, and this campaign can not decide which:"
             f" {sets_in_words(verdict.ambiguity_set)}."
-            + shrinks.replace("Adding it", "Adding the most probable of them")
+            + _shrinks(verdict, "the most probable of them")
         ),
         "unknown": (
             f"The model and the measurement disagree, and no effect {_tried(verdict)} explains it:"
@@ -54,6 +48,16 @@ def verdict_sentence(verdict: Verdict) -> str:
         "not_testable": f"The campaign can not be judged. {refusals}".strip(),
     }
     return sentences[verdict.verdict] + not_run_sentence(verdict.not_run)
+
+
+def _shrinks(verdict, added):
+    """Return by how much the spectra of free runs come nearer with an addition, "" if unknown."""
+    apart = verdict.misfit.holdout
+    if apart is None or (closed := apart.closed_fraction) is None:
+        return ""
+    if closed <= 0.0:
+        return f" Spectra of free runs on records that took no part are no nearer with {added}."
+    return f" Adding {added} closes {percent(closed)} of the excess misfit on records that took no part."
 
 
 def _tried(verdict):
