@@ -88,6 +88,23 @@ def test_what_the_model_does_not_move_is_compared_with_noise(compared):
     assert row["before_dB"] is not None and row["before_dB"] < 200.0
 
 
+def test_a_channel_that_rests_in_measurement_and_model_is_not_compared(compared):
+    """It measures what a sensor picks up across its axis, a thousandth of the motion."""
+    records, factor = range(len(compared.signals.load)), np.ones((len(compared.signals.names), 1))
+    factor[1] = 1.0e-8
+    quiet = replace(
+        compared,
+        measured=compared.measured * 100.0 * factor,
+        before=compared.before * factor,
+        after=compared.after * factor,
+        noise=0.0 * compared.noise,
+    )
+    assert quiet.resting == [compared.signals.names[1]]
+    assert quiet.distance(records, 1)["before_dB"] is None
+    whirling = replace(quiet, measured=compared.measured)
+    assert whirling.resting == [] and whirling.distance(records, 1)["before_dB"] > 60.0
+
+
 def test_a_force_that_was_measured_too_large_is_divided(comparison):
     """Far from contact, a force gain of two halves the response to what was measured."""
     signals = comparison.signals

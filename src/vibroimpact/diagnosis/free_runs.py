@@ -20,8 +20,9 @@ from vibroimpact.integration.contact_convergence import IntegrationError
 from .constants import FREE_EXCESS_DB, LEFT_SHARE
 from .explanations import Point, Structure
 from .measurement.signals import Signals
+from .measurement.sensed_motion import moving, orders
 from .measurement.simulated_records import simulate_records
-from .measurement.stretches import rates_of, valid_samples
+from .measurement.stretches import MOVING, rates_of, valid_samples
 
 SEEDS = 4  # whirling may begin in one run and not in another
 CHANCE_RUNS = 20  # of a record that seems off: a measurement is the farthest of all once in 21
@@ -134,7 +135,32 @@ class FreeRuns:
         known = out["measured"] > _dB(self.noise)[..., None] + ABOVE_NOISE_DB
         for name in ("before", "after"):
             known &= np.isfinite(out[name]).all(axis=1)
-        return out | {"known": known}
+        return out | {"known": known & ~self._at_rest[..., None]}
+
+    @cached_property
+    def _at_rest(self):
+        """Return (record, channel) bool: slower than MOVING, as measured and as simulated. What a
+        sensor picks up across its axis is as large, and so is the error of the force's direction.
+        """
+        own = moving(self.signals.kinds)
+        low, high = self.signals.band_Hz
+        inside = (self.frequency >= low) & (self.frequency <= high)
+        omega = 2.0 * np.pi * self.frequency[inside]
+        to_speed = omega ** (2.0 - 2.0 * orders(self.signals.kinds)[:, None])
+        out = np.broadcast_to(own, self.measured.shape[:2])
+        for psd in (self.measured, self.before.mean(axis=1), self.after.mean(axis=1)):
+            square = np.sum(psd[..., inside] * to_speed, axis=-1) * own
+            out = out & (square <= MOVING**2 * square.max(axis=-1, initial=0.0, keepdims=True))
+        return out
+
+    @property
+    def resting(self) -> list[str]:
+        """Return the names of the channels that rest in every record, and measure more than their
+        noise in one.
+        """
+        heard = (_dB(self.measured) > _dB(self.noise)[..., None] + ABOVE_NOISE_DB).any(axis=(0, 2))
+        rest = self._at_rest.all(axis=0) & heard
+        return [self.signals.names[channel] for channel in np.flatnonzero(rest)]
 
     def distance(
         self, records: Sequence[int] | np.ndarray, channel: int | None = None
