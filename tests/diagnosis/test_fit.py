@@ -84,12 +84,12 @@ def test_a_named_gain_holds_all_of_the_gain_of_its_channel():
 
 
 def test_the_direction_of_the_force_is_fitted(comparison):
-    hidden = Point(turn=(0.02,))
+    hidden = Point(turn=(0.05,))
     rows = [row for row in comparison.nuisances() if row.kind == "turn"]
-    found = fit(played(comparison.fitted(), hidden), Point(), rows, 3)
-    assert found.point.turn[0] == pytest.approx(0.02, abs=0.002)
+    found = fit(played(comparison.fitted(), hidden), Point(), rows, 6)
+    assert found.point.turn[0] == pytest.approx(0.05, abs=0.005)
     completed = comparison.structure.configuration(comparison.structure.terms(hidden))
-    assert completed.excitation.turn_deg == pytest.approx(np.rad2deg(0.02))
+    assert completed.excitation.turn_deg == pytest.approx(np.rad2deg(0.05))
 
 
 def test_a_turned_force_is_turned_about_one_axis(comparison):

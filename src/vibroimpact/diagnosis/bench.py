@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy import fft
 
 from vibroimpact.config.problems import ConfigError
 from vibroimpact.diagnosis.run_cost import count_simulated
@@ -148,7 +149,8 @@ def holding_lines(bench: Bench, points: Sequence[Point]) -> np.ndarray:
         return out
     count_simulated(len(runs))
     force = hold(runs, bench.schedule, bench.threads, bench.held_below_Hz).force[..., first:]
-    found = np.fft.rfft(force * np.hanning(force.shape[-1]), axis=-1)[..., inside]
+    window = np.hanning(force.shape[-1]).astype(force.dtype)  # single precision, as the force
+    found = fft.rfft(force * window, axis=-1)[..., inside]
     out[index >= 0] = found[index[index >= 0]]
     gain = np.stack([bench.structure.measuring(point).gain for point in points])
     return out * gain[:, None, :, None].astype(np.float32)

@@ -53,7 +53,11 @@ def _turned(effect_id: str, *before: float) -> list[tuple[float, ...]]:
 # Multiples of the sizes of the parameters (see effects.effect.SCALES), far from the neutral
 # value of the effect: values near it are found from the derivative there.
 FAR: dict[str, Sequence[tuple[float, ...]]] = {
-    "gap": [(0.4,), (0.47,), (0.56,), (0.67,), (0.8,), (0.9,), (1.1,), (1.25,), (1.5,), (2.5,)],
+    # a fit finds a gap from 5 % above or 13 % below it
+    "gap": [
+        *((share,) for share in (0.4, 0.47, 0.56, 0.67, 0.8, 0.9)),
+        *((share,) for share in (1.1, 1.25, 1.5, 1.8, 2.1, 2.5)),
+    ],
     "added_mass": [(0.05,), (0.2,), (0.8,)],
     "contact_stiffness": [(0.02,), (0.2,), (4.0,)],
     "contact_damping": [(3.0e-4,)],

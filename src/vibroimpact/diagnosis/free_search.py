@@ -33,7 +33,8 @@ RUN_FREE, PER_EFFECT = 30, 4  # points, in all and of one effect
 SCANNED = 2  # of the nearest, whose first value is changed by FACTORS
 RECORDS = 2  # those whose spectra are farthest off
 FACTORS = (0.1, 0.3, 3.0, 10.0)
-WEAKER = (0.3,)  # of the first value, where the holding force opposes a point
+# Of the first value, where the holding force opposes a point: the largest that it allows is tried.
+WEAKER = (0.3, 0.1, 0.03, 0.01)
 OPPOSED = 0.5  # in mean log power: more than a weaker value mends
 
 
@@ -149,8 +150,8 @@ def _farthest(runs: FreeRuns) -> list[int]:
 
 def _candidates(comparison: Comparison, searched: Search, base: Hypothesis) -> list[Point]:
     """Return points with one term more than a base: as they were fitted, and of each effect in turn
-    the best ones of the screening, far from neutral ones first, or weaker ones where the holding
-    force opposes these. An effect that it does not show is strong, if it is there.
+    the best ones of the screening, far from neutral ones first, or where the holding force opposes
+    these, as strong as it allows. An effect that it does not show is strong, if it is there.
     """
     known, sizes = {term.effect_id for term in base.point.terms}, comparison.sizes
     fitted = [
@@ -168,20 +169,26 @@ def _candidates(comparison: Comparison, searched: Search, base: Hypothesis) -> l
         if each.gain > -OPPOSED * lines and effect not in known:
             queues.setdefault(effect, []).append(each)
 
-    def near(screened: Screened) -> bool:
-        """Return whether the last term is no trial far from doing nothing."""
+    def later(screened: Screened) -> tuple[bool, bool]:
+        """Return whether the last term is no trial far from doing nothing, and whether it acts at
+        some supports only: what acts at all of them changes free motion most.
+        """
         term = screened.point.terms[-1]
-        return term not in far_terms(term.effect, term.location, sizes)
+        return term not in far_terms(term.effect, term.location, sizes), term.location != "all"
 
-    ordered = [sorted(own, key=near) for own in queues.values()]
+    ordered = [sorted(own, key=later) for own in queues.values()]
     turns = zip_longest(*(own[:PER_EFFECT] for own in ordered))
     chosen = [each for turn in turns for each in turn if each is not None][:RUN_FREE]
     points = [base.point.beside(each.point.terms[-1]) for each in chosen]
     opposed = [each.gain < -LEAST_GAIN * lines for each in chosen]
-    weaker = [point for point, less in zip(points, opposed, strict=True) if less]
-    weaker = [own for point in weaker for own in _scan(comparison, point, WEAKER)]
-    found, highest = holding_lines(bench, weaker), _highest(bench, before)
-    allowed = [own for own, at in zip(weaker, found, strict=True) if misfit(bench, at) < highest]
+    weaker = [
+        _scan(comparison, point, WEAKER) for point, less in zip(points, opposed, strict=True) if less
+    ]
+    found = iter(holding_lines(bench, [own for each in weaker for own in each]))
+    highest, allowed = _highest(bench, before), []
+    for each in weaker:
+        good = [own for own, at in zip(each, found, strict=False) if misfit(bench, at) < highest]
+        allowed += good[:1]
     return [*fitted, *(p for p, less in zip(points, opposed, strict=True) if not less), *allowed]
 
 
