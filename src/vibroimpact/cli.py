@@ -11,8 +11,8 @@ from pathlib import Path
 
 from vibroimpact import __version__, stability_command
 from vibroimpact.diagnosis import diagnose_command, supports_command
+from vibroimpact.equivalent_support import contact_command
 from vibroimpact.equivalent_support.command import add_arguments
-from vibroimpact.equivalent_support.contact_export import command as contact_command
 from vibroimpact.study.wear import command as wear_command
 
 # Read when numpy is first imported. The matrices are small: threads would wait for each other, and

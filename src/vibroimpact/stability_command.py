@@ -122,7 +122,7 @@ def _simulated(config: Config, folder: str | None) -> list[str]:
     """Return the lines of the tube with gaps; write its tables and figures into a folder."""
     from .io.records import write_table
     from .reports.figures.drawing import save_plots
-    from .reports.figures.flow_sweep import flow_sweep_figures
+    from .reports.figures.flow import flow_sweep_figures
     from .study.flow_sweep import flow_sweep
 
     found = flow_sweep(config)
@@ -185,7 +185,7 @@ def _write(found: Stability, folder: Path) -> None:
     """Write the tables and the figure."""
     from .io.records import write_table
     from .reports.figures.drawing import save_plots
-    from .reports.figures.stability import stability_figure
+    from .reports.figures.flow import stability_figure
 
     folder.mkdir(parents=True, exist_ok=True)
     write_table([row.table_row() for row in found.rows], folder / "stability.csv")

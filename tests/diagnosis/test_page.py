@@ -10,9 +10,8 @@ from vibroimpact.diagnosis.diagnose_command import summary
 from vibroimpact.diagnosis.verdict.content import CONCLUSIONS
 from vibroimpact.io.display_units import display_unit
 from vibroimpact.reports.discrepancy_page import discrepancy_page
-from vibroimpact.reports.explanations import explanations_of
-from vibroimpact.reports.figures.diagnosis.ranking import ranking_figure
-from vibroimpact.reports.verdict_words import verdict_sentence
+from vibroimpact.reports.figures.diagnosis.sheets import ranking_figure
+from vibroimpact.reports.verdict_words import explanations_of, verdict_sentence
 
 
 def test_closest_effect_is_shown_if_nothing_is_named():

@@ -13,6 +13,7 @@ from tests.support.study_tables import disputed_study, k_law, made_up_study
 from vibroimpact.cli import main
 from vibroimpact.equivalent_support.command import FORMATS
 from vibroimpact.io.records import write_table
+from vibroimpact.study.equivalent_table import EQUIVALENT_COLUMNS
 
 ROOT = Path(__file__).parents[2]
 
@@ -97,9 +98,8 @@ def test_methods_that_differ_give_code_1_until_one_is_taken(run, tmp_path, study
 def test_an_upper_bound_is_exported_as_a_sentence(run, tmp_path, study_model):
     study = made_up_study(tmp_path, study_model)
     text = "k < 2.45 kN/m: the tube touches nothing"
-    row = dict.fromkeys(("k_N_per_m", "k_low", "k_high", "c_N_s_per_m", "c_low", "c_high"), np.nan)
+    row = dict.fromkeys(EQUIVALENT_COLUMNS, np.nan) | {"contact_fraction": 0.0, "flag": ""}
     row |= {"gap_m": 1e-4, "load_rms_N": 1.0, "group": "all", "direction": "y", "k_bound": 2.45e3}
-    row["contact_fraction"] = 0.0
     row |= {"agreement_k": "unresolved", "agreement_c": "unresolved"}
     write_table([row | {"reason_k": text, "reason_c": text}], study / "equivalent.csv")
     for form in FORMATS:

@@ -6,12 +6,12 @@ import pytest
 from tests.support import exported_contacts as readers
 from vibroimpact.cli import main
 from vibroimpact.equivalent_support.answer import EquivalentError
-from vibroimpact.equivalent_support.contact_export.points import (
+from vibroimpact.equivalent_support.contact_points import (
     ContactPoint,
     ContactSet,
     contact_set,
 )
-from vibroimpact.equivalent_support.contact_export.registry import contacts_text
+from vibroimpact.equivalent_support.export_formats.registry import contacts_text
 
 GAP, K = 1.0e-4, 4.0e5
 MILLIMETRES = {"m": (1.0, 1.0), "mm": (1.0e3, 1.0)}  # lengths and forces of the file per SI unit

@@ -24,7 +24,7 @@ from vibroimpact.equivalent_support.study_tables import (
     summary_rows_of,
 )
 from vibroimpact.io.records import read_table, write_table
-from vibroimpact.study.equivalent_table import equivalent_rows
+from vibroimpact.study.equivalent_table import EQUIVALENT_COLUMNS, equivalent_rows
 from vibroimpact.study.run_files import write_run_files
 
 
@@ -52,7 +52,7 @@ def test_a_case_of_the_grid_is_the_table_itself(study):
 def test_tables_of_another_configuration_are_refused(study, study_config, table, reliability):
     values = study_config.model_dump(mode="json")
     if table == "equivalent.csv":
-        write_table(equivalent_rows(summary_rows_of(study, "y")), study / table)
+        write_table(equivalent_rows(summary_rows_of(study)), study / table)
     own = {"config_digest": answer_digest(values)}
     write_table([row | own for row in read_table(study / table)], study / table)
     write_run_files(study, values, ["snakemake"])
@@ -151,48 +151,24 @@ def test_a_fixed_gap_is_interpolated_in_load_alone(tmp_path, study_model):
         equivalent(study, 9.0, 3.0e-4)
 
 
-def test_both_schemas_of_the_summary_are_read(tmp_path):
-    write_table(summary_rows(), tmp_path / "consistency_summary.csv")
-    old = summary_rows_of(tmp_path, "y")
-    new_columns = {"group": "outer", "direction": "x", "verdict_k": "spread", "verdict_c": "spread"}
-    write_table(
-        summary_rows(**new_columns, reason="too short"), tmp_path / "consistency_summary.csv"
-    )
-    new = summary_rows_of(tmp_path, "y")
-    assert {(row["group"], row["direction"], row["verdict_c"]) for row in old} == {("all", "y", "")}
-    assert {(row["group"], row["direction"]) for row in new} == {("outer", "x")}
-    case = {"gap_m": 1.0e-4, "load_rms_N": 2.0}
-    pair = [
-        next(row for row in recommended_rows_of(tmp_path, rows, "y") if row.items() >= case.items())
-        for rows in (old, new)
-    ]
-    assert pair[0]["k"] == pair[1]["k"]
-    for name in ("agreement_k", "agreement_c"):
-        assert [row[name] for row in pair] == ["agree", "agree"]
-    blind = next(row for row in recommended_rows_of(tmp_path, new, "y") if np.isnan(row["k"]))
+def test_a_study_without_recommended_values_gets_them(tmp_path):
+    rows = summary_rows(group="outer", direction="x", reason="too short")
+    write_table(rows, tmp_path / "consistency_summary.csv")
+    found = recommended_rows_of(tmp_path, summary_rows_of(tmp_path))
+    assert {(row["group"], row["direction"]) for row in found} == {("outer", "x")}
+    (case,) = (row for row in found if (row["gap_m"], row["load_rms_N"]) == (1.0e-4, 2.0))
+    assert (case["agreement_k"], case["agreement_c"]) == ("agree", "agree")
+    (blind,) = (row for row in found if np.isnan(row["k_N_per_m"]))
     assert blind["reason_k"] == "no method resolves k; LSCF pole: too short"
 
 
 def test_the_recommended_table_of_the_study_is_used(study):
     rows = [
-        {
-            "gap_m": gap,
-            "load_rms_N": load,
-            "group": "left",
-            "direction": "y",
-            "k_N_per_m": 7.0e4,
-            "k_low": 6.0e4,
-            "k_high": 8.0e4,
-            "c_N_s_per_m": np.nan,
-            "c_low": np.nan,
-            "c_high": np.nan,
-            "secant_k_N_per_m": 6.5e4,
-            "secant_c_N_s_per_m": 30.0,
-            "agreement_k": "spread",
-            "agreement_c": "unresolved",
-            "reason_k": "",
-            "reason_c": "the record is short",
-        }
+        dict.fromkeys(EQUIVALENT_COLUMNS, np.nan)
+        | {"gap_m": gap, "load_rms_N": load, "group": "left", "direction": "y", "flag": ""}
+        | {"k_N_per_m": 7.0e4, "k_low": 6.0e4, "k_high": 8.0e4, "secant_c_N_s_per_m": 30.0}
+        | {"agreement_k": "spread", "agreement_c": "unresolved"}
+        | {"reason_k": "", "reason_c": "the record is short"}
         for gap in GAPS
         for load in (1.0, 8.0)
     ]
@@ -221,20 +197,13 @@ def test_tables_of_another_model_are_refused(tmp_path, study_model, group, direc
 
 
 def test_a_direction_that_is_not_driven_says_so(study):
-    rows = summary_rows_of(study, "y")
+    rows = summary_rows_of(study)
     table = [
-        {
-            "gap_m": row["gap_m"],
-            "load_rms_N": row["load_rms_N"],
-            "group": "all",
-            "direction": direction,
-            **dict.fromkeys(("k_N_per_m", "k_low", "k_high"), value),
-            **dict.fromkeys(("c_N_s_per_m", "c_low", "c_high"), value),
-            "agreement_k": agreement,
-            "agreement_c": agreement,
-            "reason_k": reason,
-            "reason_c": reason,
-        }
+        dict.fromkeys(EQUIVALENT_COLUMNS, value)
+        | {name: row[name] for name in ("gap_m", "load_rms_N", "group")}
+        | {"direction": direction, "flag": ""}
+        | dict.fromkeys(("agreement_k", "agreement_c"), agreement)
+        | dict.fromkeys(("reason_k", "reason_c"), reason)
         for row in rows
         if row["method"] == "lscf"
         for direction, value, agreement, reason in (
@@ -287,7 +256,7 @@ def test_a_disputed_value_is_taken_only_when_asked_for(tmp_path, study_model, lo
 
 def test_an_upper_bound_is_an_answer(tmp_path, study_model):
     text = "k < 2.45 kN/m: the tube hardly touches, 0.3 % of the time"
-    row = dict.fromkeys(("k_N_per_m", "k_low", "k_high", "c_N_s_per_m", "c_low", "c_high"), np.nan)
+    row = dict.fromkeys(EQUIVALENT_COLUMNS, np.nan)
     row |= {"group": "all", "direction": "y", "reason_k": text, "reason_c": text, "flag": ""}
     row |= {"agreement_k": "unresolved", "agreement_c": "unresolved"}
     table = [

@@ -7,9 +7,9 @@ import pytest
 
 import vibroimpact as vi
 from vibroimpact.cli import main
-from vibroimpact.flow.limit_cycle import describing_stiffness
+from vibroimpact.flow.coupled import describing_stiffness
 from vibroimpact.reports.figures.drawing import drawn
-from vibroimpact.reports.figures.flow_sweep import flow_sweep_figures
+from vibroimpact.reports.figures.flow import flow_sweep_figures
 from vibroimpact.study.flow_sweep import (
     Equivalent,
     FlowRun,

@@ -5,8 +5,8 @@ import pytest
 
 from evidence.validation.judges.presence import JudgeAbsent, opensees
 from tests.support.oscillator import oscillator
-from vibroimpact.equivalent_support.contact_export.points import ContactPoint, ContactSet
-from vibroimpact.equivalent_support.contact_export.registry import contacts_text
+from vibroimpact.equivalent_support.contact_points import ContactPoint, ContactSet
+from vibroimpact.equivalent_support.export_formats.registry import contacts_text
 from vibroimpact.integration.every_step import integrate_every_step
 
 MASS, STIFFNESS, CONTACT, GAP = 2.0, 8.0e3, 1.0e6, 1.0e-3

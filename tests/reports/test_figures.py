@@ -33,7 +33,6 @@ from vibroimpact.reports.figures.study import (
     psd_table,
     response,
     shapes,
-    stabilisation,
     tube,
 )
 from vibroimpact.reports.figures.study import (
@@ -160,7 +159,7 @@ def figures_identification(config, model, curves, spectra, rows):
     """The Plots of the identifications."""
     return [
         poles.figure_09_poles(config, model, curves, spectra, rows),
-        stabilisation.figure_09_stabilisation(config, curves, spectra, rows),
+        poles.figure_09_stabilisation(config, curves, spectra, rows),
         shapes.figure_10_shapes(config, model, curves, rows),
         shapes.figure_11_singular_values(config, curves),
         broadband.figure_12_broadband(config, model, curves, spectra, rows),

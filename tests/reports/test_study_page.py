@@ -26,12 +26,10 @@ from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.io.records import read_record, write_record
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.reports.captions import CATEGORIES, CaptionError, read_caption
-from vibroimpact.reports.centred_wear import centred_sentence
 from vibroimpact.reports.equivalent_answer import Answer, Value
 from vibroimpact.reports.figures.interactive.equivalent import equivalent_plots
 from vibroimpact.reports.figures.interactive.page_plot import Control
-from vibroimpact.reports.figures.interactive.shape import shapes_of
-from vibroimpact.reports.figures.interactive.spectrum import band_of, spectra_of_series
+from vibroimpact.reports.figures.interactive.response import band_of, shapes_of, spectra_of_series
 from vibroimpact.reports.figures.interactive.statistics import contact_plots
 from vibroimpact.reports.figures.interactive.study_plots import MOST_FRAMES, shown_loads
 from vibroimpact.reports.figures.plot import Axis
@@ -44,6 +42,7 @@ from vibroimpact.reports.study_words import (
     run_sentence,
 )
 from vibroimpact.reports.table import Table
+from vibroimpact.reports.wear_life import centred_sentence
 from vibroimpact.study.cases import all_cases, case_from_id
 
 ROOT = Path(__file__).parents[2]

@@ -20,15 +20,16 @@ from vibroimpact.reports.wear_life import wear_sentences, wear_table
 from vibroimpact.study.cases import all_cases
 from vibroimpact.study.run_files import write_run_files
 from vibroimpact.study.wear.command import wear_life
-from vibroimpact.study.wear.depth import (
+from vibroimpact.study.wear.laws import (
     YEAR_S,
+    Archard,
+    EdfMz,
     WornShape,
     crescent_area,
     depth_of,
     segment_area,
     volume_of,
 )
-from vibroimpact.study.wear.laws import Archard, EdfMz
 from vibroimpact.study.wear.life import worn_life
 
 ROOT = Path(__file__).parents[2]

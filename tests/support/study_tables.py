@@ -16,7 +16,7 @@ def k_law(level):
 
 
 def summary_rows(**more):
-    """The rows of consistency_summary.csv in today's schema; more: columns in place of verdict."""
+    """The rows of consistency_summary.csv; more: columns in place of those of all supports in y."""
     rows = []
     for gap in GAPS:
         for load in LOADS:
@@ -28,7 +28,8 @@ def summary_rows(**more):
                 row |= {"method": method, "k_median": k, "k_low": 0.9 * k, "k_high": 1.2 * k}
                 row |= {"c_median": c, "c_low": 0.5 * c, "c_high": 2.0 * c, "ratio": factor}
                 verdict = "unresolved" if blind else "agree"
-                rows.append(row | (more or {"verdict": verdict}))
+                row |= {"verdict_k": verdict, "verdict_c": "", "reason": "", "flag": ""}
+                rows.append(row | {"group": "all", "direction": "y"} | more)
     return rows
 
 

@@ -22,8 +22,14 @@ from vibroimpact.config.flow import ConnorsForce, NegativeDamping, QuasiSteady
 from vibroimpact.config.reading import load_config
 from vibroimpact.config.schema import Config
 from vibroimpact.excitation.fluid_elastic import FluidForce, fluid_force
-from vibroimpact.flow.coupled import Zone, critical_velocity, oscillations, system
-from vibroimpact.flow.limit_cycle import ModelInFlow, describing_stiffness
+from vibroimpact.flow.coupled import (
+    ModelInFlow,
+    Zone,
+    critical_velocity,
+    describing_stiffness,
+    oscillations,
+    system,
+)
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.study.cases import all_cases

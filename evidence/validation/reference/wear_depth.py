@@ -7,8 +7,15 @@ import numpy as np
 
 from evidence.validation.check import Check
 from vibroimpact.config.wear import Wear
-from vibroimpact.study.wear.depth import YEAR_S, WornShape, depth_of, volume_of
-from vibroimpact.study.wear.laws import Archard, EdfMz, WearLaw
+from vibroimpact.study.wear.laws import (
+    YEAR_S,
+    Archard,
+    EdfMz,
+    WearLaw,
+    WornShape,
+    depth_of,
+    volume_of,
+)
 from vibroimpact.study.wear.life import worn_life
 
 ASTER = "code_aster (zzzz405a)"

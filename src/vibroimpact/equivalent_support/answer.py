@@ -1,7 +1,5 @@
 """The answer to "which k and c": per group of supports and direction, with its basis."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -160,7 +158,7 @@ class Answer:
             for _, span, agreement, _ in group.parts
         )
 
-    def anyway(self, method: str) -> Answer:
+    def anyway(self, method: str) -> "Answer":
         """Return the answer with the values of one method if there is no recommended one."""
         return replace(self, groups=tuple(_with_values_of(group, method) for group in self.groups))
 

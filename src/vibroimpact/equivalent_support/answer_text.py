@@ -1,13 +1,12 @@
 """An answer as a readable table, as rows of a CSV table, and as plain values for JSON."""
 
-from __future__ import annotations
-
 import csv
 import io
 from dataclasses import asdict
 from typing import Any
 
 from vibroimpact.io.records import plain_values
+from vibroimpact.study.equivalent_table import VALUES
 from vibroimpact.study.method_agreement import COMPARED
 from vibroimpact.study.reasons import NOT_MOVED, UNITS
 
@@ -18,6 +17,7 @@ AGREEMENTS = {
     "differ": "they differ",
     "unresolved": "not resolved",
 }
+TEXTS = ("agreement_k", "agreement_c", "reason_k", "reason_c", "how")  # columns of a group
 PARTIAL = {"k": "two of three resolve it", "c": "one of two resolves it"}
 
 
@@ -93,31 +93,13 @@ def _span_text(span: Span) -> str:
 def table_rows(answer: Answer) -> list[dict[str, Any]]:
     """Return {column of the CSV: value} of every group and direction."""
     return [
-        {
-            "study": answer.study,
-            "kind": answer.kind,
-            "gap_m": answer.gap_m,
-            "load_rms_N": answer.load_rms_N,
-            "group": group.group,
-            "supports": " ".join(group.supports),
-            "direction": group.direction,
-            "k_N_per_m": group.k.value,
-            "k_low": group.k.low,
-            "k_high": group.k.high,
-            "c_N_s_per_m": group.c.value,
-            "c_low": group.c.low,
-            "c_high": group.c.high,
-            "secant_k_N_per_m": group.secant_k,
-            "secant_c_N_s_per_m": group.secant_c,
-            "agreement_k": group.agreement_k,
-            "agreement_c": group.agreement_c,
-            "reason_k": group.reason_k,
-            "reason_c": group.reason_c,
-            "how": group.how,
-            "k_bound": group.bound,
-            "flag": group.flag,
-            "anyway": group.anyway,
-        }
+        {name: getattr(answer, name) for name in ("study", "kind", "gap_m", "load_rms_N")}
+        | {"group": group.group, "supports": " ".join(group.supports), "direction": group.direction}
+        | {VALUES["k"]: group.k.value, "k_low": group.k.low, "k_high": group.k.high}
+        | {VALUES["c"]: group.c.value, "c_low": group.c.low, "c_high": group.c.high}
+        | {f"secant_{column}": getattr(group, f"secant_{name}") for name, column in VALUES.items()}
+        | {name: getattr(group, name) for name in TEXTS}
+        | {"k_bound": group.bound, "flag": group.flag, "anyway": group.anyway}
         for group in answer.groups
     ]
 

@@ -3,8 +3,6 @@
 The library is imported when the command runs, so that `--help` answers at once.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from typing import TYPE_CHECKING
@@ -128,7 +126,7 @@ def run(options: argparse.Namespace) -> int:
     return 1 if missing else 0
 
 
-def _answer(options: argparse.Namespace) -> tuple[Answer, ModalModel]:
+def _answer(options: argparse.Namespace) -> "tuple[Answer, ModalModel]":
     """Return the Answer and the model that it belongs to. Raises EquivalentError, ConfigError."""
     from vibroimpact.config.reading import load_config
     from vibroimpact.reduction.reduced_model import build_model
@@ -161,7 +159,7 @@ def _answer(options: argparse.Namespace) -> tuple[Answer, ModalModel]:
     return equivalent(options.study, options.load, options.gap, model), model
 
 
-def _printed(options: argparse.Namespace, answer: Answer) -> str:
+def _printed(options: argparse.Namespace, answer: "Answer") -> str:
     """Return the text that the command prints."""
     import json
 
@@ -173,7 +171,7 @@ def _printed(options: argparse.Namespace, answer: Answer) -> str:
 
 
 def _write_export(
-    options: argparse.Namespace, answer: Answer, model: ModalModel
+    options: argparse.Namespace, answer: "Answer", model: "ModalModel"
 ) -> tuple[str, ...]:
     """Write the export. Return its omissions. Raises EquivalentError."""
     from vibroimpact.io.records import write_text

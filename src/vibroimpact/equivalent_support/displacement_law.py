@@ -12,8 +12,6 @@ displacement_law_errors.csv, are made by the target `equivalent_law` of the work
 default study and from the tubes of config/validation/other_tubes.yaml.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass

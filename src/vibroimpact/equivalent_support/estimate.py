@@ -1,7 +1,5 @@
 """The equivalent support of a configuration without a simulation: an estimate, from a law."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -98,7 +96,7 @@ def _notes(model: ModalModel, shipped: ShippedLaw, error: dict[str, float]) -> t
         f" level simulation over law is {error['k_low']:.2g} to {error['k_high']:.2g} for k and"
         f" {error['c_low']:.2g} to {error['c_high']:.2g} for c in at least 80 % of them: the"
         f" intervals above. The values are the law times the medians, {error['k_median']:.2g} and"
-        f" {error['c_median']:.2g}.",
+        f" {error['c_median']:.2g}."
     ]
     laws = model.contact_laws
     unknown = [

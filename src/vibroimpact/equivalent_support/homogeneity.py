@@ -6,8 +6,6 @@ linear elements and the stops' random offsets (fractions of the gap) keep this; 
 length or force do not.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from vibroimpact.reduction.modal_model import ModalModel

@@ -1,7 +1,5 @@
 """The modes of a tube in a flow with its supports open, closed and equivalent, in words."""
 
-from __future__ import annotations
-
 from vibroimpact.config.schema import Config
 from vibroimpact.flow.stability import Stability, stability_of_states
 from vibroimpact.study.cases import load_values

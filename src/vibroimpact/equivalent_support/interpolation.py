@@ -1,10 +1,8 @@
 """Values of a study between its loads, from one gap or from all gaps at equal load over gap."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import chain
+from itertools import chain, groupby
 from operator import itemgetter
 from typing import Any
 
@@ -36,10 +34,7 @@ class Reading:
 
 
 def read_at(
-    rows: Sequence[dict[str, Any]],
-    level: float,
-    columns: tuple[str, str, str],
-    logarithmic: bool,
+    rows: Sequence[dict[str, Any]], level: float, columns: tuple[str, str, str], logarithmic: bool
 ) -> Reading:
     """Return the Reading of a level: linear in the logarithm of the level within each gap.
 
@@ -106,13 +101,6 @@ def _between(
 
 def ranges_of_agreement(rows: Sequence[dict[str, Any]], column: str) -> list[tuple[float, float]]:
     """Return the ranges of level over which every row says "agree", lowest first."""
-    ranges: list[list[float]] = []
-    open_ = False
-    for row in sorted(rows, key=itemgetter("level")):
-        agrees = row[column] == "agree"
-        if agrees and open_:
-            ranges[-1][1] = row["level"]
-        elif agrees:
-            ranges.append([row["level"], row["level"]])
-        open_ = agrees
-    return [(low, high) for low, high in ranges]
+    runs = groupby(sorted(rows, key=itemgetter("level")), key=lambda row: row[column] == "agree")
+    levels = [[row["level"] for row in run] for agrees, run in runs if agrees]
+    return [(own[0], own[-1]) for own in levels]

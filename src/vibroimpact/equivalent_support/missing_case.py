@@ -1,7 +1,5 @@
 """The answer outside the grid of a study: the nearest case, and how to add the one wanted."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from difflib import get_close_matches
 from pathlib import Path

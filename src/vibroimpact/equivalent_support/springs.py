@@ -1,7 +1,5 @@
 """The springs and dampers to ground that an answer means, at the contact points of the supports."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -41,6 +39,8 @@ class SpringSet:
     warnings: sentences that no reader of a file may miss. notes: more for its head.
     left_out: sentences on values that are not resolved and therefore not among the springs.
     """
+
+    title = "Springs and dampers to ground"
 
     springs: tuple[PointSpring, ...]
     warnings: tuple[str, ...]
@@ -150,7 +150,7 @@ def _notes(answer: Answer, across: str) -> tuple[str, ...]:
     kind = "ESTIMATE from a law, without a simulation" if answer.kind == "estimate" else "study"
     notes = [
         f"Equivalent supports of {kind} '{answer.study}' at {answer.load_rms_N:g} N RMS and a gap"
-        f" of {1e3 * answer.gap_m:.6g} mm.",
+        f" of {1e3 * answer.gap_m:.6g} mm."
     ]
     for group in filter(lambda group: group.moved, answer.groups):
         if group.bounded:

@@ -1,7 +1,5 @@
 """The equivalent support of a study at any load and gap inside its grid."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,10 +9,11 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.identify.estimate import METHODS
-from vibroimpact.identify.linear.support_groups import acting_directions, driven_word
+from vibroimpact.identify.linear.support_groups import acting_directions
 from vibroimpact.io.records import RecordError
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.reduction.model_file import read_model
+from vibroimpact.study.equivalent_table import VALUES
 from vibroimpact.study.method_agreement import VERDICTS
 from vibroimpact.study.reasons import bound_text
 
@@ -28,10 +27,7 @@ Rows = list[dict[str, Any]]
 
 
 def equivalent(
-    study: str | Path,
-    load_rms_N: float,
-    gap_m: float,
-    model: ModalModel | None = None,
+    study: str | Path, load_rms_N: float, gap_m: float, model: ModalModel | None = None
 ) -> Answer:
     """Return the Answer of a finished study at a load and a gap.
 
@@ -50,9 +46,8 @@ def equivalent(
         if not (np.isfinite(value) and value > 0.0):
             raise EquivalentError(f"the {name} is {value:g} {unit}: give a positive number")
     model = model_of(folder) if model is None else model
-    direction = driven_word(model)
-    summary = summary_rows_of(folder, direction)
-    recommended = recommended_rows_of(folder, summary, direction)
+    summary = summary_rows_of(folder)
+    recommended = recommended_rows_of(folder, summary)
     require_metres(gap_m, [row["gap_m"] for row in recommended])
     effects = effects_with_a_scale(model)
     if effects:
@@ -184,16 +179,16 @@ def _group_answer(
 ) -> GroupAnswer:
     """Return the GroupAnswer from the recommended and the summary rows of a group."""
     recommended, summary = tables
-    k = asked.read(recommended, "k", ("k", "k_low", "k_high"))
-    c = asked.read(recommended, "c", ("c", "c_low", "c_high"))
+    k = asked.read(recommended, "k", (VALUES["k"], "k_low", "k_high"))
+    c = asked.read(recommended, "c", (VALUES["c"], "c_low", "c_high"))
     reasons = {"k": _reason(k, "k"), "c": _reason(c, "c")}
     bound = _bound(k)
     if np.isfinite(bound):
         touching = max(row["contact_fraction"] for row in k.rows)
         reasons = dict.fromkeys(reasons, bound_text(bound, touching))
     secant = {
-        name: asked.read(recommended, name, (f"secant_{name}",) * 3).span.value
-        for name in ("k", "c")
+        name: asked.read(recommended, name, (f"secant_{column}",) * 3).span.value
+        for name, column in VALUES.items()
     }
     return GroupAnswer(
         group=group,
@@ -240,7 +235,7 @@ def _reason(reading: Reading, name: str) -> str:
     if reading.span.resolved:
         row = max(reading.rows, key=lambda row: VERDICTS.index(row[f"agreement_{name}"]))
         return str(row[f"reason_{name}"])
-    lacking = [row for row in reading.rows if not np.isfinite(row[name])]
+    lacking = [row for row in reading.rows if not np.isfinite(row[VALUES[name]])]
     if not lacking:
         return ""
     lacking.sort(key=lambda row: row[f"agreement_{name}"] != "differ")
@@ -263,7 +258,7 @@ def _bound(reading: Reading) -> float:
     """
     if reading.span.resolved or not reading.rows:
         return np.nan
-    ends = [row["k_bound"] if np.isnan(row["k"]) else row["k_high"] for row in reading.rows]
+    ends = [row["k_bound"] if np.isnan(row[VALUES["k"]]) else row["k_high"] for row in reading.rows]
     return float(np.max(ends))
 
 

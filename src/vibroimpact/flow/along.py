@@ -2,8 +2,6 @@
 at Gauss points along it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -9,8 +9,6 @@ Source: code_aster R4.07.04 and its routine connor.F90. TEMA's factors are secon
 docs/stability.md).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,11 +1,9 @@
 """The stability of a tube in a flow, with all supports that hold it and without some of them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
-from itertools import combinations
+from itertools import chain, combinations
 from typing import Any
 
 import numpy as np
@@ -17,11 +15,17 @@ from vibroimpact.excitation.fluid_elastic import fluid_force, outside_fit
 from vibroimpact.identify.linear.support_groups import SupportDirection, support_directions
 
 from .along import TubeInFlow, tube_in_flow
-from .coupled import Zone, critical_velocity, oscillations, system
+from .coupled import (
+    Zone,
+    contact_stiffness,
+    critical_velocity,
+    lowest_states,
+    oscillations,
+    system,
+)
 from .critical_velocity import connors, mass_damping, tema_factor
 
 MODES = 8  # reported: the lowest of each direction
-STATES = 20  # lowest modes that a fluid-elastic force couples
 LEAST_SHARE = 0.05  # of a mode's energy in a direction: below, the force does not drive it
 VELOCITIES = 41  # of the eigenvalues, from 0 to the highest
 # Ends of the names of columns that have a unit.
@@ -93,21 +97,14 @@ class Stability:
         rows = [
             row
             for row in self.rows
-            if row.velocity == velocity and len(_names(row.inactive)) == inactive
+            if row.velocity == velocity
+            and len(row.inactive.split("+") if row.inactive else ()) == inactive
         ]
         return max(rows, key=lambda row: row.ratio_high, default=None)
 
 
-def _names(joined: str) -> list[str]:
-    """Return the names of supports that a row joins."""
-    return joined.split("+") if joined else []
-
-
 def stability(
-    config: Config,
-    stiffness: float | None = None,
-    damping: float = 0.0,
-    inactive: int = 1,
+    config: Config, stiffness: float | None = None, damping: float = 0.0, inactive: int = 1
 ) -> Stability:
     """Return the Stability of the tube of a configuration with a section `flow`.
 
@@ -117,8 +114,7 @@ def stability(
 
     Raises NoFlow if the configuration has no flow or no tube.
     """
-    flow, tube = _in_flow(config)
-    return _stability(_Held(flow, tube, stiffness, damping), inactive)
+    return _Held(*_in_flow(config), stiffness, damping).stability(inactive)
 
 
 def stability_of_states(
@@ -128,7 +124,7 @@ def stability_of_states(
     `stability`.
     """
     flow, tube = _in_flow(config)
-    return {name: _stability(_Held(flow, tube, *own), 0) for name, own in states.items()}
+    return {name: _Held(flow, tube, *own).stability(0) for name, own in states.items()}
 
 
 def _in_flow(config: Config) -> tuple[Flow, TubeInFlow]:
@@ -141,20 +137,6 @@ def _in_flow(config: Config) -> tuple[Flow, TubeInFlow]:
             else f"flow: acts along a tube, structure.kind is {config.structure.kind}"
         )
     return flow, tube_in_flow(config, flow)
-
-
-def _stability(held: _Held, inactive: int) -> Stability:
-    """Return the Stability with at most `inactive` supports that do not hold."""
-    flow = held.flow
-    rows = tuple(row for names in held.states(inactive) for row in held.rows(names))
-    found = Stability(rows, held.eigenvalues(flow.coupling) if flow.coupling else None)
-    worst = [found.worst(velocity, 0) for velocity in flow.velocity_m_per_s]
-    told = [
-        outside_fit(flow.coupling, row.velocity, row.frequency, held.tube.diameter)
-        for row in worst
-        if row is not None
-    ]
-    return replace(found, warnings=tuple(filter(None, told)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,72 +153,51 @@ class _Held:
         """Return each support in each direction that it acts in."""
         return support_directions(self.tube.model, "each")
 
-    def states(self, most: int) -> Iterator[tuple[str, ...]]:
-        """Yield the names of supports that do not hold: none, then every combination."""
-        names = self.tube.model.support_names
-        for count in range(min(most, len(names)) + 1):
-            yield from combinations(names, count)
+    def stability(self, inactive: int) -> Stability:
+        """Return the Stability with at most `inactive` supports that do not hold."""
+        flow, names = self.flow, self.tube.model.support_names
+        states = (combinations(names, count) for count in range(min(inactive, len(names)) + 1))
+        rows = tuple(row for left_out in chain(*states) for row in self.rows(left_out))
+        found = Stability(rows, self.eigenvalues(flow.coupling) if flow.coupling else None)
+        worst = filter(None, (found.worst(velocity, 0) for velocity in flow.velocity_m_per_s))
+        diameter = self.tube.diameter
+        told = (outside_fit(flow.coupling, row.velocity, row.frequency, diameter) for row in worst)
+        return replace(found, warnings=tuple(filter(None, told)))
 
     def matrices(self, inactive: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
         """Return (stiffness, damping), each (mode, mode) in 1/s² and 1/s."""
         model = self.tube.model
-        own = np.bincount(model.support_of_point, model.contact_stiffness)
         stiff, drag = np.diag(model.omega**2), np.diag(model.damping)
-        for support in self.supports:
-            if support.group in inactive:
-                continue
-            number = model.support_names.index(support.group)
-            held = own[number] if self.stiffness is None else self.stiffness
-            product = support.contact @ support.contact.T
-            stiff, drag = stiff + held * product, drag + self.damping * product
+        stiffness = contact_stiffness(model, self.supports)
+        for support, own in zip(self.supports, stiffness, strict=True):
+            if support.group not in inactive:
+                held = own if self.stiffness is None else self.stiffness
+                product = support.contact @ support.contact.T
+                stiff, drag = stiff + held * product, drag + self.damping * product
         return stiff, drag
 
     def rows(self, inactive: Sequence[str]) -> Iterator[StabilityRow]:
-        """Yield the rows of the lowest modes of each direction."""
+        """Yield the rows of the lowest modes of each direction at all velocities."""
         stiff, drag = self.matrices(inactive)
         squares, vectors = np.linalg.eigh(stiff)
         along = self.tube.along
         for direction, shapes in self.tube.shapes.items():
-            told = 0
-            for square, vector in zip(squares, vectors.T, strict=True):
-                shape = vector @ shapes
-                share = np.sum(along.weight * along.mass * shape**2)
-                if square <= 0.0 or share < LEAST_SHARE:
-                    continue
-                told += 1
+            moved = [
+                (square, vector, shape)
+                for square, vector in zip(squares, vectors.T, strict=True)
+                for shape in [vector @ shapes]
+                if square > 0.0 and np.sum(along.weight * along.mass * shape**2) >= LEAST_SHARE
+            ]
+            for number, (square, vector, shape) in enumerate(moved[:MODES], 1):
                 omega = float(np.sqrt(square))
+                frequency = omega / (2.0 * np.pi)
                 ratio = float(vector @ drag @ vector) / (2.0 * omega)
-                yield from self._of_mode(
-                    inactive, (told, direction), omega / (2.0 * np.pi), ratio, shape
-                )
-                if told == MODES:
-                    break
-
-    def _of_mode(
-        self,
-        inactive: Sequence[str],
-        name: tuple[int, str],
-        frequency: float,
-        ratio: float,
-        shape: np.ndarray,
-    ) -> Iterator[StabilityRow]:
-        """Yield the rows of one mode at all velocities; name: (number, direction)."""
-        low, high = self._critical(frequency, ratio)
-        unit = self.tube.along.effective(shape)
-        for velocity in self.flow.velocity_m_per_s:
-            effective = velocity * unit
-            yield StabilityRow(
-                velocity,
-                "+".join(inactive),
-                *name,
-                frequency,
-                ratio,
-                effective,
-                low,
-                high,
-                effective / high if high > 0.0 else np.inf,
-                effective / low if low > 0.0 else np.inf,
-            )
+                low, high = self._critical(frequency, ratio)
+                mode = "+".join(inactive), number, direction, frequency, ratio
+                for velocity in self.flow.velocity_m_per_s:
+                    effective = velocity * along.effective(shape)
+                    ratios = [effective / end if end > 0.0 else np.inf for end in (high, low)]
+                    yield StabilityRow(velocity, *mode, effective, low, high, *ratios)
 
     def _critical(self, frequency: float, ratio: float) -> tuple[float, float]:
         """Return (lowest, highest) V_c in m/s of a mode."""
@@ -252,10 +213,7 @@ class _Held:
 
     def eigenvalues(self, own: Coupling) -> Eigenvalues:
         """Return the Eigenvalues with a fluid-elastic force, all supports holding."""
-        stiff, drag = self.matrices(())
-        squares, vectors = np.linalg.eigh(stiff)
-        kept = vectors[:, :STATES]
-        stiff, drag = np.diag(squares[:STATES]), kept.T @ drag @ kept
+        kept, stiff, drag = lowest_states(*self.matrices(()))
         zones = [Zone(z.factor, kept.T @ z.overlap @ kept) for z in self.tube.zones()]
         force = fluid_force(own, self.tube.diameter)
         highest = max(self.flow.velocity_m_per_s)

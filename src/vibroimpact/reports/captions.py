@@ -12,13 +12,7 @@ from pathlib import Path
 from vibroimpact.io.whole_file import read_text
 
 # In the order in which a reader needs them.
-CATEGORIES = (
-    "Equivalent support",
-    "Response",
-    "Contact, wear and stress",
-    "Checks",
-    "Model",
-)
+CATEGORIES = ("Equivalent support", "Response", "Contact, wear and stress", "Checks", "Model")
 HEADER = re.compile(r"^\.\. (category|title): (.+)$", flags=re.M)
 
 

@@ -13,11 +13,12 @@ from vibroimpact.effects.effect import TESTS
 from vibroimpact.effects.places import place_in_words
 from vibroimpact.effects.registry import EFFECTS, effects_in_words
 
-from .explanations import chance_text, explanations_of
 from .number_text import digits, percent, span
 from .page import embedded, rendered
 from .table import table_of
 from .verdict_words import (
+    chance_text,
+    explanations_of,
     for_reading,
     judgement,
     next_steps,
@@ -27,10 +28,7 @@ from .verdict_words import (
 )
 
 # The records of each misfit, held-out ones first.
-SPLITS = {
-    "holdout": "held out: not fitted",
-    "fit": "fitted",
-}
+SPLITS = {"holdout": "held out: not fitted", "fit": "fitted"}
 HEADINGS = {
     "named": "The missing effect",
     "partly_explained": "A part of the missing effects",
@@ -135,11 +133,7 @@ def _stages(verdict):
     """Return the Table of the cost of the stages, without rows if it is not known."""
     stages = {} if verdict.cost is None else verdict.cost.by_stage
     return table_of(
-        {
-            "stage": stage,
-            "CPU time (s)": digits(cost.cpu_seconds),
-            "simulations": cost.simulations,
-        }
+        {"stage": stage, "CPU time (s)": digits(cost.cpu_seconds), "simulations": cost.simulations}
         for stage, cost in stages.items()
     )
 

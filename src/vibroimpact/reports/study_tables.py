@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from itertools import groupby, product
 
 from .equivalent_answer import Answer, Value
-from .evenly_spread import spread_evenly
 from .number_text import digits, range_text, span
 from .study_content import StudyContent
 from .study_statistics import RESIDUALS, SEVERAL, StudyStatistics
 from .study_words import stiffness_unit
-from .table import Table, table_of
+from .table import Table, spread_evenly, table_of
 
 AGREEMENTS = {
     "agree": "agree",

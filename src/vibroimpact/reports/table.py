@@ -1,4 +1,4 @@
-"""A table of texts on a page."""
+"""A table of texts on a page, and the few values of many that it has room for."""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -37,3 +37,10 @@ def table_of(rows: Iterable[Mapping[str, Any]], left_out: Sequence[str] = ()) ->
     rows = list(rows)
     columns = tuple(name for name in (rows[0] if rows else ()) if name not in left_out)
     return Table(columns, [tuple(str(row[name]) for name in columns) for row in rows])
+
+
+def spread_evenly(values: Sequence, most: int) -> list:
+    """Return at most `most` of the values, both ends among them, evenly spaced in their order."""
+    if len(values) <= most:
+        return list(values)
+    return [values[round(at * (len(values) - 1) / (most - 1))] for at in range(most)]

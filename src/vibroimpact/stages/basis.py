@@ -30,10 +30,6 @@ def make(given: Any, made: Any, params: Any) -> None:
     print(f"{model.modes} modes; residuals of the initial state: {model.initial_residual.tolist()}")
     for sentence in mesh_warnings(accuracy):
         print(f"warning: {sentence}")
-    write_model(
-        model,
-        made.model,
-        file_attributes(params.config, params.library),
-    )
+    write_model(model, made.model, file_attributes(params.config, params.library))
     write_table(accuracy, made.accuracy, COLUMNS)
     write_table(quality, made.quality)

@@ -36,8 +36,5 @@ def make(given: Any, made: Any, params: Any) -> None:
         own = {DIGEST_COLUMN: params.digest}
         write_table([row | own for row in table], getattr(made, name), (*columns, *own))
     dataset = consistency_dataset(rows, summary)
-    write_record(
-        dataset.assign_attrs(file_attributes(params.config, params.library)),
-        made.dataset,
-    )
+    write_record(dataset.assign_attrs(file_attributes(params.config, params.library)), made.dataset)
     print(f"{len(rows)} estimates")

@@ -21,10 +21,7 @@ def make(given: Any, made: Any, params: Any) -> None:
     folder = Path(made.page).parent
     verdict = read_verdict(given.verdict)
     plots = diagnosis_figures(
-        read_record(given.evidence),
-        read_record(given.spectra),
-        verdict,
-        config,
+        read_record(given.evidence), read_record(given.spectra), verdict, config
     )
     shown = save_plots(plots, folder / "figures")
     write_text(

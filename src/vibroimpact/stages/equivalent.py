@@ -11,9 +11,9 @@ from vibroimpact.io.provenance import file_attributes
 from vibroimpact.io.records import write_text
 from vibroimpact.reports.captions import read_caption
 from vibroimpact.reports.figures.drawing import save_plots
-from vibroimpact.reports.figures.interactive.measured_plots import measured_plots
+from vibroimpact.reports.figures.interactive.study_plots import measured_plots
 from vibroimpact.reports.figures.study.measured import measured_figures, study_beside
-from vibroimpact.reports.measured_content import measured_content
+from vibroimpact.reports.study_content import measured_content
 from vibroimpact.reports.study_page import pictures, study_page
 from vibroimpact.study.headline import flag_sentences
 

@@ -21,11 +21,7 @@ def make(given: Any, made: Any, params: Any) -> Stopwatch:
     stopwatch = Stopwatch()
     source = file_attributes(params.config, params.library)
     for record_path, spectra_path, table_path, curves_path in zip(
-        given.records,
-        given.spectra,
-        made.tables,
-        made.curves,
-        strict=True,
+        given.records, given.spectra, made.tables, made.curves, strict=True
     ):
         record = read_case(record_path, RECORD_READ)
         spectra = read_case(spectra_path, SPECTRA_READ)

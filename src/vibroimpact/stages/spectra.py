@@ -16,9 +16,6 @@ def make(given: Any, made: Any, params: Any) -> Stopwatch:
     for series, path in zip(given.series, made.spectra, strict=True):
         record = read_case(series)
         spectra = stopwatch.time("spectra", case_spectra, config, record)
-        write_record(
-            spectra.assign_attrs(file_attributes(params.config, params.library)),
-            path,
-        )
+        write_record(spectra.assign_attrs(file_attributes(params.config, params.library)), path)
         print(f"{path} written")
     return stopwatch

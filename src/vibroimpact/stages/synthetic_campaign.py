@@ -15,8 +15,7 @@ def make(given: Any, made: Any, params: Any) -> Stopwatch:
     config, stopwatch = StageSettings(params.config), Stopwatch()
     campaign = synthetic_campaign(config, read_model(given.model), params.loads, stopwatch)
     write_campaign(
-        campaign.assign_attrs(file_attributes(params.config, params.library)),
-        made.campaign,
+        campaign.assign_attrs(file_attributes(params.config, params.library)), made.campaign
     )
     print(f"{made.campaign} written, loads {params.loads} N RMS")
     return stopwatch

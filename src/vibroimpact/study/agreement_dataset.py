@@ -81,11 +81,7 @@ def _estimates(rows: list[dict], axes: dict) -> dict[str, tuple]:
     quality = np.full(shape, len(QUALITIES) - 1, np.int8)
     flagged = np.zeros(shape, np.int8)
     for row in rows:
-        index = (
-            *_place(row, axes),
-            axes["seed"].index(row["seed"]),
-            METHODS.index(row["method"]),
-        )
+        index = (*_place(row, axes), axes["seed"].index(row["seed"]), METHODS.index(row["method"]))
         for column, (name, _, _) in ESTIMATES.items():
             data[name][1][index] = row[column]
         quality[index] = QUALITIES.index(row["quality"])

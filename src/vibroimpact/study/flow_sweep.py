@@ -18,7 +18,7 @@ from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.schema import Config
 from vibroimpact.excitation.fluid_elastic import FluidLaws, fluid_force
 from vibroimpact.excitation.turbulence import load_of_spectrum
-from vibroimpact.flow.limit_cycle import ModelInFlow
+from vibroimpact.flow.coupled import ModelInFlow
 from vibroimpact.flow.stability import NoFlow
 from vibroimpact.geometry.sections import outer_width
 from vibroimpact.identify.secant import secant_support

@@ -39,7 +39,7 @@ DECLARED: dict[tuple[str, str], dict[str, tuple[str, str]]] = {
         "land_work_rate": (
             "W",
             "wear work rate at each land of a support, in the order of its profile",
-        ),
+        )
     },
     ("contact_point direction", "f8"): {
         "force_displacement": ("N m", "mean of restoring force times displacement"),

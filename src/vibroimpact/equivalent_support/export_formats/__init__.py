@@ -1,4 +1,6 @@
-"""Springs and dampers to ground in the input formats of other programs, one module each.
+"""Springs and dampers to ground, and the contact of the supports, in the input formats of other
+programs, one module each.
 
-Every module has `text(springs, unit, first_number)`, which returns the text of a file.
+A module has `springs_text(springs, unit, first_number)`, `contacts_text(contacts, unit,
+first_number)` or both, which return the text of a file.
 """

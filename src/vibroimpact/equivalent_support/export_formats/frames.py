@@ -1,7 +1,5 @@
 """The head of an exported file, its units, and the frames that springs act in."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -9,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..answer import EquivalentError
+from ..contact_points import ContactSet
 from ..springs import SpringSet
 
 FIRST_NUMBER = 900001  # of nodes and elements, above the numbers of most models
@@ -42,23 +41,17 @@ def unit_system(name: str) -> UnitSystem:
     return UNIT_SYSTEMS[name]
 
 
-def head(
-    content: SpringSet,
-    unit: UnitSystem,
-    mark: str,
-    extra: str = "",
-    title: str = "Springs and dampers to ground",
-) -> list[str]:
+def head(content: SpringSet | ContactSet, unit: UnitSystem, mark: str, use: str) -> list[str]:
     """Return the comment lines that begin a file.
 
-    mark: the start of a comment. extra: a sentence on how to use the file. title: of the content.
+    mark: the start of a comment. use: a sentence on how to use the file.
     """
     sentences = [
         *(f"WARNING: {sentence}." for sentence in content.warnings),
-        f"{title}, written by vibroimpact. Units: {unit.name}.",
+        f"{content.title}, written by vibroimpact. Units: {unit.name}.",
         *content.notes,
         *(f"LEFT OUT: {sentence}." for sentence in content.left_out),
-        *filter(None, [extra]),
+        use,
     ]
     lines = [line for sentence in sentences for line in textwrap.wrap(sentence, WIDTH)]
     return [f"{mark} {line}" for line in lines]

@@ -5,8 +5,6 @@ Source: MSC Nastran Quick Reference Guide, entries CBUSH, PBUSH, CORD2R, GRID. C
 is a spring to ground; its coordinate system CID gives the axes of K1 to K3.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..springs import PointSpring, SpringSet
@@ -19,7 +17,7 @@ USE = (
 )
 
 
-def text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
+def springs_text(springs: SpringSet, unit: UnitSystem, first_number: int) -> str:
     """Return the bulk data. Grids, elements, properties and systems count from first_number."""
     lines = head(springs, unit, "$", USE)
     for number, spring in enumerate(springs.springs, first_number):

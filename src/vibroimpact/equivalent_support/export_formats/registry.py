@@ -1,23 +1,35 @@
-"""The formats that springs can be written in, by the name that the command line takes."""
+"""The formats that springs and contact can be written in, by the names that commands take."""
 
-from __future__ import annotations
-
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import Any
 
 from ..answer import EquivalentError
+from ..contact_points import ContactSet
 from ..springs import PointSpring, SpringSet, shared
 from . import abaqus, code_aster, nastran, opensees, tables
 from .frames import FIRST_NUMBER, UnitSystem, plain_name, unit_system
 
-FORMATS: dict[str, Callable[[SpringSet, UnitSystem, int], str]] = {
-    "nastran": nastran.text,
-    "code_aster": code_aster.text,
-    "abaqus": abaqus.text,
-    "opensees": opensees.text,
+SPRINGS: dict[str, Callable[[SpringSet, UnitSystem, int], str]] = {
+    "nastran": nastran.springs_text,
+    "code_aster": code_aster.springs_text,
+    "abaqus": abaqus.springs_text,
+    "opensees": opensees.springs_text,
     "csv": tables.csv_text,
     "json": tables.json_text,
 }
+# format -> (its text, laws that it lacks)
+CONTACTS: dict[str, tuple[Callable[[ContactSet, UnitSystem, int], str], tuple[str, ...]]] = {
+    "abaqus": (abaqus.contacts_text, ("damping", "friction")),
+    "opensees": (opensees.contacts_text, ("damping", "friction")),
+    "code_aster": (code_aster.contacts_text, ()),
+}
+
+
+def _require_known(form: str, known: Mapping[str, Any]) -> None:
+    """Raise EquivalentError for a format that is not known."""
+    if form not in known:
+        raise EquivalentError(f"format '{form}' is none of {', '.join(known)}")
 
 
 def springs_text(
@@ -25,14 +37,13 @@ def springs_text(
 ) -> str:
     """Return the text of a file with springs and dampers to ground.
 
-    form: one of FORMATS. unit: "m" for m, N, kg, s or "mm" for mm, N, t, s.
+    form: one of SPRINGS. unit: "m" for m, N, kg, s or "mm" for mm, N, t, s.
     first_number: first number or tag of nodes and elements, if the format has them.
 
     Raises EquivalentError for another format or unit, and if two supports have the same name in the
     letters of a format.
     """
-    if form not in FORMATS:
-        raise EquivalentError(f"format '{form}' is none of {', '.join(FORMATS)}")
+    _require_known(form, SPRINGS)
     names = [plain_name(spring.name).lower() for spring in springs.springs]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
@@ -42,7 +53,7 @@ def springs_text(
         )
     system = unit_system(unit)
     own = tuple(_in_unit(spring, system) for spring in springs.springs)
-    return FORMATS[form](replace(springs, springs=own), system, first_number)
+    return SPRINGS[form](replace(springs, springs=own), system, first_number)
 
 
 def _in_unit(spring: PointSpring, unit: UnitSystem) -> PointSpring:
@@ -53,3 +64,23 @@ def _in_unit(spring: PointSpring, unit: UnitSystem) -> PointSpring:
         k=shared(spring.k, unit.stiffness),
         c=shared(spring.c, unit.damping),
     )
+
+
+def contacts_text(
+    contacts: ContactSet, form: str, unit: str = "m", first_number: int = FIRST_NUMBER
+) -> tuple[str, tuple[str, ...]]:
+    """Return (text of a file with the contacts, sentences on its omissions).
+
+    form: one of CONTACTS. unit, first_number: as of springs_text.
+
+    Raises EquivalentError for another format or unit, and for holes that the format lacks.
+    """
+    _require_known(form, CONTACTS)
+    write, lacking = CONTACTS[form]
+    left_out = tuple(
+        f"{law} of the contact, which the export for {form} does not have"
+        for law in lacking
+        if any(getattr(point, law) > 0.0 for point in contacts.points)
+    )
+    own = replace(contacts, left_out=left_out)
+    return write(own, unit_system(unit), first_number), left_out

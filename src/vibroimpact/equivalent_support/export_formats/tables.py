@@ -1,7 +1,5 @@
 """Springs and dampers as CSV and JSON: one row per point and direction."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json
@@ -28,13 +26,7 @@ def rows(springs: SpringSet) -> list[dict[str, Any]]:
         for axis, k, c in zip(spring.axes, spring.k, spring.c, strict=True):
             if k is None:
                 continue
-            values = (
-                spring.name,
-                spring.support,
-                *map(float, (*spring.position, *axis)),
-                k,
-                c,
-            )
+            values = (spring.name, spring.support, *map(float, (*spring.position, *axis)), k, c)
             table.append(dict(zip(COLUMNS, values, strict=True)))
     return table
 

@@ -6,8 +6,6 @@ the RMS of its force in N. If no record has one it is the RMS of the displacemen
 records still differ by the strength of the motion.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -140,26 +138,15 @@ def equivalent_of(
     spectra = {
         case: measured_spectra(settings, tube, record, case) for record, case in enumerate(cases)
     }
-    return _identified(settings, tube, spectra, name, _notes(config, tube))
-
-
-def _identified(
-    config: ConfigPart,
-    tube: MeasuredTube,
-    spectra: Mapping[Case, xr.Dataset],
-    levels: str,
-    notes: tuple[str, ...],
-) -> MeasuredSupports:
-    """Return the MeasuredSupports of the spectra of all records."""
     tables, curves = [], {}
     for case, dataset in spectra.items():
-        estimates, curves[case] = identify_case(config, tube.model, None, dataset)
+        estimates, curves[case] = identify_case(settings, tube.model, None, dataset)
         tables.append(table_rows(estimates, dataset.attrs))
     rows = consistency_rows(tables)
     summary = summary_rows(rows)
-    unreached = unreached_supports(tube.model, config.identification.groups)
+    unreached = unreached_supports(tube.model, settings.identification.groups)
     return MeasuredSupports(
-        config=config,
+        config=settings,
         model=tube.model,
         force=tube.force,
         records={case: str(dataset.attrs["record"]) for case, dataset in spectra.items()},
@@ -168,8 +155,8 @@ def _identified(
         rows=rows,
         summary=summary,
         equivalent=equivalent_rows(summary, unreached),
-        levels=levels,
-        notes=notes,
+        levels=name,
+        notes=_notes(config, tube),
     )
 
 

@@ -14,8 +14,7 @@ from vibroimpact.config.wear import Wear
 from vibroimpact.geometry.sections import section_kind
 from vibroimpact.io.records import read_record
 
-from .depth import YEAR_S, WornShape, depth_of, volume_of
-from .laws import Archard, EdfMz, WearLaw, published_laws
+from .laws import YEAR_S, Archard, EdfMz, WearLaw, WornShape, depth_of, published_laws, volume_of
 
 STEPS = 200  # of depth through the wall, each with the work rate of its gap
 Rates = dict[tuple[float, float], dict[tuple[str, int], float]]

@@ -11,10 +11,9 @@ from vibroimpact.effects.places import arc_length_m, place_in_words
 from vibroimpact.effects.registry import EFFECTS, effects_in_words
 from vibroimpact.geometry.centreline import build_centreline
 from vibroimpact.geometry.support_spans import support_middles
-from vibroimpact.reports.figures.labels import spread_labels
 from vibroimpact.reports.figures.sheet import WIDTH_IN, Sheet
 from vibroimpact.reports.figures.style import BLACK, BLUE, GREY, ORANGE
-from vibroimpact.reports.figures.view import THICK_LINE, View
+from vibroimpact.reports.figures.view import THICK_LINE, View, spread_labels
 
 TUBES = ("u_tube", "path")
 LINE_POINTS = 300

@@ -1,4 +1,6 @@
-"""The plots of a study's page, by section, and the controls that they follow."""
+"""The plots of the page of a study, or of a measured tube, by section, and the controls that they
+follow.
+"""
 
 from collections.abc import Callable, Sequence
 from itertools import product
@@ -6,19 +8,26 @@ from typing import Any, NamedTuple
 
 from plotly.offline import get_plotlyjs
 
-from vibroimpact.reports.centred_wear import centred_in
 from vibroimpact.reports.equivalent_answer import ALL_SUPPORTS, places_of
-from vibroimpact.reports.evenly_spread import spread_evenly
 from vibroimpact.reports.figures.plot import Axis, extent
 from vibroimpact.reports.figures.study.linear_limits import shown_band
+from vibroimpact.reports.figures.study.poles import chart_panel
 from vibroimpact.reports.figures.study.psd_table import driven_sensor
 from vibroimpact.reports.study_content import StudyContent
 from vibroimpact.reports.study_page import PagePlots
+from vibroimpact.reports.table import spread_evenly
+from vibroimpact.reports.wear_life import centred_in
 
 from .equivalent import equivalent_plots
-from .page_plot import Control
-from .shape import shape_plot, shapes_of
-from .spectrum import band_of, spectra_of_sensor, spectra_of_series, spectrum_plot
+from .page_plot import Control, PagePlot
+from .response import (
+    band_of,
+    shape_plot,
+    shapes_of,
+    spectra_of_sensor,
+    spectra_of_series,
+    spectrum_plot,
+)
 from .statistics import contact_plots, energy_plots, stress_plots
 
 MOST_FRAMES = 144  # spectra on the page, gaps times loads: 20 kB each
@@ -95,3 +104,42 @@ def _response_plots(content, files, places):
     if shapes:
         plots.append(shape_plot(model, shapes, config.record.shape_line.direction))
     return plots
+
+
+def measured_plots(content: StudyContent, found: Any) -> PagePlots:
+    """Return the PagePlots of MeasuredSupports: those of a study, and stabilisation charts."""
+    files = {f"{case.id}.nc": dataset for case, dataset in found.spectra.items()}
+    factor = content.load_factor
+    summary = [{**row, "load_rms_N": factor * row["load_rms_N"]} for row in found.summary]
+    given = StudyFiles(found.model, [], [*files], [], summary, lambda path, _=(): files[path])
+    plots = study_plots(content, given)
+    chart = _stabilisation(found)
+    answer = [*plots.sections["answer"], *([chart] if chart.has_traces() else [])]
+    return plots._replace(sections={**plots.sections, "answer": answer})
+
+
+def _stabilisation(found: Any) -> PagePlot:
+    """Return the plot of the charts by gap and load, of the first record of each."""
+    identification = found.config.identification
+    sensor = driven_sensor(found.config, identification.response_point)
+    first = {(case.gap_m, case.load_rms_N): case for case in sorted(found.curves, reverse=True)}
+    return PagePlot(
+        "stabilisation",
+        "Stabilisation chart of the LSCF pole",
+        (
+            f"Poles by model order over the spectrum of {sensor} (grey, right), first record of the"
+            " level. The circles are the pole that was taken. Trust it if a column of stable"
+            " poles stands at the peak."
+        ),
+        {
+            place: chart_panel(
+                found.curves[case], found.spectra[case], sensor, identification.lscf.band_Hz
+            )
+            for place, case in first.items()
+            if "chart_order" in found.curves[case]
+        },
+        ("gap", "load"),
+        empty="No pole was found at the main peak.",
+        wide=True,
+        height=420,
+    )

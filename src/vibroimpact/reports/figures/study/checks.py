@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.integration.energy_limit import ENERGY_LIMIT
-from vibroimpact.reports.centred_wear import centred_sentence
 from vibroimpact.reports.figures.plot import Axis, Item, Mark, Panel, Plot, Series, Text
 from vibroimpact.reports.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PINK, RED, gap_label
 from vibroimpact.reports.study_statistics import EACH, RESIDUALS, SEVERAL, StudyStatistics
+from vibroimpact.reports.wear_life import centred_sentence
 from vibroimpact.study.cases import case_from_id
 
 from .equivalent import looks_of_gaps

@@ -7,9 +7,9 @@ import numpy as np
 from vibroimpact.campaign.file import SYNTHETIC, channel_at, channel_signal
 from vibroimpact.identify.linear.family import LinearFamily, driven_modes
 from vibroimpact.identify.spectra.welch import psd_statistics, segment_spectra
-from vibroimpact.reports.evenly_spread import spread_evenly
 from vibroimpact.reports.figures.plot import Axis, Item, Mark, Panel, Plot, Series, in_rows
 from vibroimpact.reports.figures.style import BLACK, BLUE, GREEN, RED, gap_label, label_of, shown
+from vibroimpact.reports.table import spread_evenly
 
 from .linear_limits import limit_modes, shown_band
 from .psd_table import STATISTICS, driven_sensor, inside

@@ -8,11 +8,10 @@ from matplotlib.patches import Polygon
 
 from vibroimpact.geometry.sections import outer_width, section_kind
 from vibroimpact.reduction.ritz_basis import eigenmodes, uncoupled_groups
-from vibroimpact.reports.figures.labels import spread_labels
 from vibroimpact.reports.figures.plot import in_rows
 from vibroimpact.reports.figures.sheet import Sheet
 from vibroimpact.reports.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PALE, RED, gap_label
-from vibroimpact.reports.figures.view import THICK_LINE, View
+from vibroimpact.reports.figures.view import THICK_LINE, View, spread_labels
 from vibroimpact.structure.beam_elements import DOF_PER_NODE
 from vibroimpact.structure.contact.profiles import with_plain_profiles
 

@@ -3,12 +3,10 @@
 The library is imported when the command runs, so that `--help` answers at once.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 
-from ..command import add_file_arguments
+from .command import add_file_arguments
 
 FORMATS = ("abaqus", "opensees", "code_aster")
 
@@ -37,9 +35,9 @@ def run(options: argparse.Namespace) -> int:
     from vibroimpact.io.records import RecordError, write_text
     from vibroimpact.reduction.reduced_model import build_model
 
-    from ..answer import EquivalentError
-    from .points import contact_set
-    from .registry import contacts_text
+    from .answer import EquivalentError
+    from .contact_points import contact_set
+    from .export_formats.registry import contacts_text
 
     form, path = options.export
     try:

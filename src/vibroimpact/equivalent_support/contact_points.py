@@ -1,7 +1,5 @@
 """The contact of a configuration's supports as other programs take it: points, lands and laws."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,9 +7,7 @@ import numpy as np
 from vibroimpact.config.schema import Config
 from vibroimpact.reduction.modal_model import ModalModel
 
-from ..answer import EquivalentError
-from ..export_formats.frames import UnitSystem, head
-from ..springs import SpringSet
+from .answer import EquivalentError
 
 # Keys of a support whose laws no format has.
 WITHOUT_FORMAT = ("plate", "other_point", "preload_N", "hunt_crossley_s_per_m", "hertz_N_per_m15")
@@ -73,14 +69,12 @@ class ContactSet:
     left_out: sentences on the terms that a format does not have.
     """
 
+    title = "Contact of supports"
+    warnings = ()
+
     points: tuple[ContactPoint, ...]
     notes: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
-
-    def head(self, unit: UnitSystem, mark: str, use: str) -> list[str]:
-        """Return the comment lines that begin a file; mark and use as in frames.head."""
-        sentences = SpringSet((), (), self.notes, self.left_out)
-        return head(sentences, unit, mark, use, "Contact of supports")
 
 
 def contact_set(config: Config, model: ModalModel, gap_m: float) -> ContactSet:
