@@ -7,8 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from vibroimpact.config.changed_keys import changed_config
-from vibroimpact.config.reading import load_config
+from vibroimpact.config.reading import changed_config, load_config
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.reduction.reduced_model import build_model
 

@@ -29,8 +29,7 @@ from evidence.validation.reference import (
     runs as reference_runs,
 )
 from evidence.validation.reference.random_stops import exact_law
-from vibroimpact.config.changed_keys import changed_config
-from vibroimpact.config.reading import load_config
+from vibroimpact.config.reading import changed_config, load_config
 from vibroimpact.reduction.reduced_model import build_model
 
 COLUMNS = (

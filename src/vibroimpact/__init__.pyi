@@ -8,9 +8,9 @@ from .campaign.file import campaign_dataset as campaign_dataset
 from .campaign.file import read_campaign as read_campaign
 from .campaign.file import write_campaign as write_campaign
 from .campaign.importing.assemble import import_folder as import_folder
-from .config.changed_keys import changed_config as changed_config
 from .config.json_schema import json_schema as json_schema
 from .config.problems import ConfigError as ConfigError
+from .config.reading import changed_config as changed_config
 from .config.reading import check_config as check_config
 from .config.reading import load_config as load_config
 from .config.schema import Config as Config

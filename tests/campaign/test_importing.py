@@ -134,15 +134,7 @@ def write_uff(folder, signals):
         file = pyuff.UFF(str(folder / f"{level}.uff"))
         file.write_sets(
             [
-                uff_set(
-                    values,
-                    direction,
-                    kind,
-                    label,
-                    number,
-                    node,
-                    binary=1,
-                )
+                uff_set(values, direction, kind, label, number, node, binary=1)
                 for number, (values, direction, kind, label, node) in enumerate(
                     zip(
                         rows,

@@ -2,14 +2,13 @@
 
 import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 import yaml
 
 import vibroimpact
+from tests.support.snakemake_runs import told_by
 from vibroimpact.cli import main
 from vibroimpact.config.reading import load_config
 from vibroimpact.study.folder import shared_files
@@ -92,15 +91,9 @@ def test_own_rules_go_below_the_workflow(tmp_path):
     snakefile = tmp_path / "mine" / "Snakefile"
     own = 'rule mine:\n    output:\n        f"{RESULTS}/mine.txt",\n    shell:\n        "exit 1"\n'
     snakefile.write_text(snakefile.read_text() + own)
-    run = subprocess.run(
-        [sys.executable, "-m", "snakemake", "--dry-run", "mine"],
-        cwd=tmp_path / "mine",
-        env=os.environ | {"PYTHONPATH": str(ROOT / "src")},
-        capture_output=True,
-        text=True,
-    )
-    assert run.returncode == 0, run.stdout + run.stderr
-    assert "results/smoke/mine.txt" in run.stdout + run.stderr
+    environment = os.environ | {"PYTHONPATH": str(ROOT / "src")}
+    told = told_by(tmp_path / "mine", "--dry-run", "mine", env=environment)
+    assert "results/smoke/mine.txt" in told
 
 
 def test_the_profile_of_a_study_is_valid_yaml(tmp_path):

@@ -4,7 +4,6 @@ import fcntl
 import os
 import shutil
 import subprocess
-import sys
 import tempfile
 import time
 from pathlib import Path
@@ -12,6 +11,7 @@ from pathlib import Path
 import pytest
 import yaml
 
+from tests.support import snakemake_runs
 from tests.support.tiny_study import ROOT, tiny_values
 
 SCRIPT = Path(__file__).with_name("slurm_on_loopback.sh")
@@ -25,9 +25,8 @@ def command(folder, *arguments):
     configuration = folder / "tiny.yaml"
     values = tiny_values(grid={"load_rms_N": [4.0], "gap_m": [1e-4], "seeds": 2})
     configuration.write_text(yaml.safe_dump(values))
-    snakemake = [sys.executable, "-m", "snakemake", "--snakefile", ROOT / "Snakefile"]
     places = ["--configfile", configuration, "--directory", folder]
-    return [str(part) for part in (*snakemake, *places, *arguments)]
+    return snakemake_runs.command(*snakemake_runs.RULES, *places, *arguments)
 
 
 def wait_for(what, told):

@@ -12,11 +12,11 @@ from pathlib import Path
 import pytest
 import yaml
 
-from vibroimpact.config.asked_numbers import asked_number
 from vibroimpact.config.reading import Config, ConfigError, check_config, load_config
 from vibroimpact.config.reserved_names import TARGETS
 from vibroimpact.config.stage_keys import STAGE_KEYS, select, stage_params
 from vibroimpact.config.stage_settings import StageSettings
+from vibroimpact_workflow.asked_numbers import asked_number
 
 ROOT = Path(__file__).parents[2]
 STUDY = ROOT / "config" / "study.yaml"

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from evidence.validation.reference.random_stops import exact_law
-from vibroimpact.config.changed_keys import changed_config
-from vibroimpact.config.reading import load_config
+from vibroimpact.config.reading import changed_config, load_config
 from vibroimpact.identify.linear.support_groups import reached_supports
 from vibroimpact.identify.secant import secant_support
 from vibroimpact.reduction.reduced_model import build_model

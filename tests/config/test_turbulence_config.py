@@ -18,11 +18,7 @@ FORCE = {
     "both_directions": True,
     "correlation_length_m": 0.075,
     "band_Hz": [5.0, 200.0],
-    "spectrum": {
-        "kind": "tube_bundle",
-        "velocity_m_per_s": 2.0,
-        "fluid_density_kg_per_m3": 750.0,
-    },
+    "spectrum": {"kind": "tube_bundle", "velocity_m_per_s": 2.0, "fluid_density_kg_per_m3": 750.0},
 }
 LEG = {"from_m": [-0.3, 0.0, 0.1], "to_m": [-0.3, 0.0, 0.6]}
 

@@ -3,8 +3,6 @@ read.
 """
 
 import re
-import subprocess
-import sys
 import tomllib
 
 import pytest
@@ -12,6 +10,7 @@ import yaml
 
 import vibroimpact
 from tests.docs.markdown import ROOT
+from tests.support.snakemake_runs import told_by
 
 CITATION = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
@@ -130,13 +129,6 @@ def test_workflow_is_planned_as_a_module_of_another(tmp_path):
         f'        "{ROOT}/workflow/Snakefile"\n    config:\n        config\n\n'
         "use rule * from tube\n"
     )
-    run = subprocess.run(
-        [sys.executable, "-m", "snakemake", "--dry-run", "--quiet", "rules"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-    )
-    told = run.stdout + run.stderr
-    assert run.returncode == 0, told
+    told = told_by(tmp_path, "--dry-run", "--quiet", "rules")
     assert len(set(re.findall(r"^_simulate_from_\S+ +1$", told, re.M))) == 3
     assert re.search(r"^all +1$", told, re.M)

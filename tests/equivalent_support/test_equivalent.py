@@ -14,7 +14,7 @@ from tests.support.study_tables import (
     summary_rows,
 )
 from vibroimpact import EquivalentError, equivalent
-from vibroimpact.config.changed_keys import changed_config
+from vibroimpact.config.reading import changed_config
 from vibroimpact.config.stage_keys import answer_digest
 from vibroimpact.equivalent_support.answer import NOT_MOVED
 from vibroimpact.equivalent_support.answer_text import as_plain, as_text

@@ -20,8 +20,7 @@ from vibroimpact.campaign.file import (
     write_campaign,
 )
 from vibroimpact.campaign.importing.report import import_text
-from vibroimpact.config.changed_keys import changed_config
-from vibroimpact.config.reading import load_config
+from vibroimpact.config.reading import changed_config, load_config
 from vibroimpact.config.stage_keys import answer_digest
 from vibroimpact.equivalent_support.answer import EquivalentError
 from vibroimpact.equivalent_support.measured.equivalent_of import cases_of_records, gaps_of_records

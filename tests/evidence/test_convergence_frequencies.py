@@ -6,7 +6,7 @@ import pytest
 from evidence.validation.convergence import contact_points
 from evidence.validation.convergence import mesh as convergence_mesh
 from evidence.validation.convergence.rate import extrapolated, fitted_order, successive_changes
-from vibroimpact.config.changed_keys import changed_config
+from vibroimpact.config.reading import changed_config
 from vibroimpact.structure.tube import build_structure
 
 

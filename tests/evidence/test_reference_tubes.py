@@ -9,8 +9,7 @@ import pytest
 
 from evidence.validation.reference.runs import run, tube_checks
 from evidence.validation.reference.tubes import cantilever_checks
-from vibroimpact.config.changed_keys import changed_config
-from vibroimpact.config.reading import load_config
+from vibroimpact.config.reading import changed_config, load_config
 from vibroimpact.reduction.reduced_model import build_model
 
 FOLDER = Path(__file__).resolve().parents[2] / "config" / "reference"

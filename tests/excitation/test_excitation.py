@@ -17,11 +17,7 @@ from vibroimpact.excitation.force_files import (
     require_lasting,
 )
 from vibroimpact.excitation.force_stream import ForceStream
-from vibroimpact.excitation.random_force import (
-    ForceError,
-    band_limited_noise,
-    resample_measured,
-)
+from vibroimpact.excitation.random_force import ForceError, band_limited_noise, resample_measured
 from vibroimpact.excitation.random_streams import random_generator
 
 BAND = (5.0, 200.0)

@@ -6,14 +6,13 @@ import hashlib
 import os
 import signal
 import subprocess
-import sys
 import time
 from pathlib import Path
 
 import netCDF4
 import yaml
 
-from tests.support.tiny_study import ROOT
+from tests.support.snakemake_runs import RULES, command
 
 PATIENCE_S = 120.0
 
@@ -30,10 +29,9 @@ class Runs:
 
     def start(self, *arguments, **environment):
         """Start snakemake in a process group of its own; returns the process."""
-        command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")]
         clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
         process = subprocess.Popen(
-            [*command, "-j1", *arguments, "--configfile", "mine.yaml"],
+            command(*RULES, "-j1", *arguments, "--configfile", "mine.yaml"),
             cwd=self.folder,
             env=clean | environment,
             stdout=subprocess.PIPE,

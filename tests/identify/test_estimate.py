@@ -3,12 +3,7 @@
 import numpy as np
 import pytest
 
-from vibroimpact.identify.estimate import (
-    Estimate,
-    grade,
-    mark_weak,
-    unresolved,
-)
+from vibroimpact.identify.estimate import Estimate, grade, mark_weak, unresolved
 from vibroimpact.identify.segment_scatter import (
     effective_duration,
     jackknife_influences,

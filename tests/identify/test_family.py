@@ -110,8 +110,7 @@ def test_damping_of_the_first_mode_to_first_order(study_model, tube):
         )
         ahead = natural_frequencies(study_model, 1.01 * k, 1)[0]
         assert tube.frequency_slope(k) == pytest.approx(
-            np.log(ahead / natural_frequencies(study_model, k, 1)[0]) / np.log(1.01),
-            rel=0.02,
+            np.log(ahead / natural_frequencies(study_model, k, 1)[0]) / np.log(1.01), rel=0.02
         )
 
 

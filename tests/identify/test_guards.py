@@ -12,8 +12,7 @@ import xarray as xr
 from tests.support.linear_records import LinearRecords, statistics
 from tests.support.made_up_study import made_up_config
 from tests.support.tiny_study import tiny_values
-from vibroimpact.config.changed_keys import changed_config
-from vibroimpact.config.reading import check_config, load_config
+from vibroimpact.config.reading import changed_config, check_config, load_config
 from vibroimpact.identify.estimate import Estimate, table_rows, unresolved
 from vibroimpact.identify.guards import beyond_checked, guarded
 from vibroimpact.identify.identify_case import identify_case, reference_tube

@@ -62,11 +62,11 @@ def white_noise_spectra(frequency):
 
 def test_half_spectra_hold_each_mode_once_with_its_decay():
     frequency = np.arange(0.0, 128.01, 0.05)
-    lags = lag_window("none", 2 * (frequency.size - 1), 20.0, 5.0)
-    assert lags.decay == pytest.approx(np.log(100.0) / 5.0)
+    weights, decay = lag_window("none", 2 * (frequency.size - 1), 20.0, 5.0)
+    assert decay == pytest.approx(np.log(100.0) / 5.0)
     band = slice(100, 900)
-    values = half_spectra(white_noise_spectra(frequency)[:, :2], lags, band)
-    poles = NormalEquations(frequency[band], values, 16).poles(16)[0] + lags.decay
+    values = half_spectra(white_noise_spectra(frequency)[:, :2], weights, band)
+    poles = NormalEquations(frequency[band], values, 16).poles(16)[0] + decay
     for place, ratio in zip(FREQUENCIES, RATIOS, strict=True):
         found = frequency_of(poles[nearest_pole(poles, pole_of(place, ratio), 1.0)])
         assert found[0] == pytest.approx(place, rel=2.0e-4)
@@ -80,9 +80,9 @@ def test_half_spectra_undo_the_window_and_count_lag_0_half(window):
     correlation = np.exp(-1.5 * lag) * np.cos(2.0 * np.pi * 12.0 * lag)
     weighted = correlation * window_autocorrelation(window, samples, samples)
     symmetric = np.concatenate([weighted[: samples // 2 + 1], weighted[1 : samples // 2][::-1]])
-    lags = lag_window(window, samples, segment_s, 2.0)
-    found = half_spectra(np.fft.rfft(symmetric).real, lags, slice(50, 200))
-    kept = correlation[:256] * np.exp(-lags.decay * lag[:256])
+    weights, decay = lag_window(window, samples, segment_s, 2.0)
+    found = half_spectra(np.fft.rfft(symmetric).real, weights, slice(50, 200))
+    kept = correlation[:256] * np.exp(-decay * lag[:256])
     kept[0] *= 0.5
     expected = np.exp(-2j * np.pi * np.outer(np.arange(50, 200) / segment_s, lag[:256])) @ kept
     np.testing.assert_allclose(found, expected, atol=1.0e-6)

@@ -17,8 +17,7 @@ from vibroimpact.campaign.file import (
     fill_missing,
     with_no_force,
 )
-from vibroimpact.config.changed_keys import changed_config
-from vibroimpact.config.reading import load_config
+from vibroimpact.config.reading import changed_config, load_config
 from vibroimpact.equivalent_support.measured.equivalent_of import equivalent_of
 from vibroimpact.identify.estimate import table_rows
 from vibroimpact.identify.identify_case import identify_case

@@ -11,8 +11,7 @@ import pytest
 from llvmlite import binding
 from numba.core.registry import cpu_target
 
-from vibroimpact.config.changed_keys import changed_config
-from vibroimpact.config.reading import load_config
+from vibroimpact.config.reading import changed_config, load_config
 from vibroimpact.integration.batch import Schedule, integrate_batch
 from vibroimpact.integration.kernels.lanes import LANES
 from vibroimpact.integration.kernels.march import march

@@ -7,7 +7,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from vibroimpact.config.changed_keys import changed_config
+from vibroimpact.config.reading import changed_config
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.io.records import read_record
 from vibroimpact.io.stopwatch import Stopwatch

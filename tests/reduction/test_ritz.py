@@ -11,11 +11,7 @@ from scipy import linalg, sparse
 from tests.structure.test_structure import plate, straight
 from tests.structure.test_structure import tube as coarse_tube
 from vibroimpact.reduction.reduced_model import build_model
-from vibroimpact.reduction.ritz_basis import (
-    basis_vectors,
-    orthonormal_basis,
-    uncoupled_groups,
-)
+from vibroimpact.reduction.ritz_basis import basis_vectors, orthonormal_basis, uncoupled_groups
 
 BASIS = SimpleNamespace(
     free_modes_to_Hz=2000.0, constrained_modes_to_Hz=800.0, attachment_shapes=True

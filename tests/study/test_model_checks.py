@@ -8,8 +8,7 @@ import pytest
 import yaml
 
 from vibroimpact.cli import main
-from vibroimpact.config.changed_keys import changed_config
-from vibroimpact.config.reading import ConfigError, check_config
+from vibroimpact.config.reading import ConfigError, changed_config, check_config
 from vibroimpact.identify.case_estimates import standard_errors
 from vibroimpact.study.model_checks import check_model
 

@@ -1,12 +1,10 @@
 """A model that can not run ends a dry run with its sentence; a coarse mesh warns."""
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
+from tests.support.snakemake_runs import RULES, snakemake
 from tests.support.sound_campaign import sound_campaign
 from vibroimpact.campaign.file import write_campaign
 
@@ -17,14 +15,7 @@ SMOKE = (ROOT / "config" / "smoke.yaml").read_text()
 def dry_run(folder, text, *arguments):
     """The finished dry run of a configuration."""
     (folder / "mine.yaml").write_text(text)
-    command = [sys.executable, "-m", "snakemake", "--snakefile", ROOT / "Snakefile", "--dry-run"]
-    return subprocess.run(
-        [str(part) for part in (*command, *arguments, "--configfile", "mine.yaml")],
-        cwd=folder,
-        env=os.environ,
-        capture_output=True,
-        text=True,
-    )
+    return snakemake(folder, *RULES, "--dry-run", *arguments, "--configfile", "mine.yaml")
 
 
 def test_a_too_stiff_contact_ends_the_dry_run(tmp_path):

@@ -1,16 +1,13 @@
 """A structure given by matrices: an edit of a matrix reruns what was computed from it."""
 
-import os
 import re
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
 
-ROOT = Path(__file__).parents[2]
+from tests.support.snakemake_runs import RULES, told_by
+
 BENCH = {
     "study": "bench",
     "structure": {
@@ -28,16 +25,7 @@ BENCH = {
 
 def snakemake(folder, *arguments):
     """The output of snakemake with the configuration of a folder."""
-    command = [sys.executable, "-m", "snakemake", "--snakefile", ROOT / "Snakefile", *arguments]
-    run = subprocess.run(
-        [str(part) for part in (*command, "--configfile", "bench.yaml")],
-        cwd=folder,
-        env=os.environ,
-        capture_output=True,
-        text=True,
-    )
-    assert run.returncode == 0, run.stdout + run.stderr
-    return run.stdout + run.stderr
+    return told_by(folder, *RULES, *arguments, "--configfile", "bench.yaml")
 
 
 def planned(output):

@@ -12,7 +12,6 @@ import pty
 import re
 import shutil
 import subprocess
-import sys
 from collections import Counter
 from contextlib import suppress
 from pathlib import Path
@@ -21,6 +20,7 @@ import numpy as np
 import pytest
 import yaml
 
+from tests.support.snakemake_runs import command, snakemake
 from tests.support.sound_campaign import sound_campaign
 from vibroimpact.campaign.file import write_campaign
 from vibroimpact.config.reading import check_config
@@ -77,19 +77,16 @@ class Study:
         """Run snakemake with a configuration; returns the finished process."""
         (self.folder / "mine.yaml").write_text(yaml.safe_dump(values or self.values))
         clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-        command = [sys.executable, "-m", "snakemake", *arguments, "--configfile", "mine.yaml"]
-        return subprocess.run(
-            command, cwd=self.folder, env=clean | environment, capture_output=True, text=True
-        )
+        given = (*arguments, "--configfile", "mine.yaml")
+        return snakemake(self.folder, *given, env=clean | environment)
 
     def on_a_terminal(self, *arguments, **environment):
         """Run snakemake with its output on a terminal; returns what the terminal got."""
         (self.folder / "mine.yaml").write_text(yaml.safe_dump(self.values))
         ours, theirs = pty.openpty()
-        command = [sys.executable, "-m", "snakemake", *arguments, "--configfile", "mine.yaml"]
         clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
         started = subprocess.Popen(
-            command,
+            command(*arguments, "--configfile", "mine.yaml"),
             cwd=self.folder,
             env=clean | {"TERM": "xterm", "COLUMNS": "120"} | environment,
             stdin=subprocess.DEVNULL,

@@ -1,12 +1,11 @@
 """What snakemake is given that it can not use: YAML files, and values of --config."""
 
 import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
+from tests.support.snakemake_runs import snakemake
 from vibroimpact_workflow.yaml_files import give_cache, require_yaml
 
 ROOT = Path(__file__).parents[2]
@@ -14,13 +13,7 @@ ROOT = Path(__file__).parents[2]
 
 def refusal(*arguments, target="all"):
     """The last line of a dry run of snakemake that is refused."""
-    run = subprocess.run(
-        [sys.executable, "-m", "snakemake", "--dry-run", target, *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        cwd=ROOT,
-        timeout=60,
-    )
+    run = snakemake(ROOT, "--dry-run", target, *arguments, timeout=60)
     assert run.returncode == 1 and "Traceback" not in run.stderr, run.stderr
     return run.stderr.strip().splitlines()[-1]
 

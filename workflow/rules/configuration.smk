@@ -44,8 +44,8 @@ os.environ.update(
     NUMBA_NUM_THREADS="1",
 )
 
-from vibroimpact.config.asked_numbers import asked_number
 from vibroimpact.config.reading import ConfigError, check_config, read_yaml
+from vibroimpact_workflow.asked_numbers import asked_number
 from vibroimpact_workflow.resources import memory, minutes
 
 # Values of --config that are not keys of the study.

@@ -3,7 +3,7 @@
 import numpy as np
 
 from evidence.validation.study_curves import STIFFNESS
-from vibroimpact.config.changed_keys import changed_config
+from vibroimpact.config.reading import changed_config
 from vibroimpact.identify.linear.modes import natural_frequencies
 from vibroimpact.reduction.reduced_model import build_model
 

@@ -10,7 +10,7 @@ order 2. Both orders are checked.
 import numpy as np
 
 from evidence.validation.check import Check
-from vibroimpact.config.changed_keys import changed_config
+from vibroimpact.config.reading import changed_config
 from vibroimpact.identify.linear.modes import natural_frequencies
 from vibroimpact.reduction.reduced_model import build_model
 

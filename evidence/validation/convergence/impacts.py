@@ -10,7 +10,7 @@ control.
 import numpy as np
 
 from evidence.validation.check import Check
-from vibroimpact.config.changed_keys import changed_config
+from vibroimpact.config.reading import changed_config
 from vibroimpact.identify.spectra.welch import effective_averages
 from vibroimpact.identify.spectra.window_leakage import spectral_kernel
 from vibroimpact.reduction.reduced_model import build_model

@@ -11,7 +11,7 @@ from scipy import sparse
 from scipy.sparse import linalg
 
 from evidence.validation.check import Check
-from vibroimpact.config.changed_keys import changed_config
+from vibroimpact.config.reading import changed_config
 from vibroimpact.structure.tube import build_structure
 
 from .rate import extrapolated, fitted_order, successive_changes

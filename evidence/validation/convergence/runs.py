@@ -7,7 +7,7 @@ lines at every step, because the synthesis length is the same time at all rates.
 
 import numpy as np
 
-from vibroimpact.config.changed_keys import changed_config
+from vibroimpact.config.reading import changed_config
 from vibroimpact.identify.spectra.welch import psd_statistics, segment_spectra
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.study.cases import Case

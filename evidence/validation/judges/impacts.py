@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from evidence.validation.check import Check
-from vibroimpact.config.changed_keys import changed_config
+from vibroimpact.config.reading import changed_config
 from vibroimpact.excitation.random_force import band_limited_noise
 from vibroimpact.integration.every_step import integrate_every_step
 from vibroimpact.integration.kernel_layout import FIXED_POINT_TOLERANCE

@@ -11,7 +11,7 @@ from scipy import sparse
 
 from evidence.validation.check import Check
 from evidence.validation.reference.frequencies import plane_frequencies
-from vibroimpact.config.changed_keys import changed_config
+from vibroimpact.config.reading import changed_config
 from vibroimpact.config.stage_settings import StageSettings
 from vibroimpact.reduction.ritz_basis import eigenmodes, uncoupled_groups
 from vibroimpact.structure.beam_elements import element_matrices

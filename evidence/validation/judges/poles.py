@@ -173,18 +173,18 @@ def pyoma_checks(model, seeds=SEEDS) -> list[Check]:
 def _same_spectra_checks(plscf, motion, exact):
     """Return the Checks of pyOMA2's matrix fraction on our half spectra, by order."""
     spectra = segment_spectra(motion, RATE_HZ, SEGMENTS)
-    lags = lag_window(
+    weights, decay = lag_window(
         SEGMENTS.window, 2 * (spectra.frequency.size - 1), SEGMENTS.segment_s, LONGEST_LAG_S
     )
     halves = half_spectra(
-        cross_spectra(spectra.values, spectra.values[list(REFERENCES)]), lags, slice(0, None)
+        cross_spectra(spectra.values, spectra.values[list(REFERENCES)]), weights, slice(0, None)
     )
     checks = []
     for order in ORDERS:
         ours = nearest(
-            NormalEquations(spectra.frequency, halves, order).poles(order)[0] + lags.decay, exact
+            NormalEquations(spectra.frequency, halves, order).poles(order)[0] + decay, exact
         )
-        theirs = nearest(_discrete_poles(plscf, halves, order) + lags.decay, exact)
+        theirs = nearest(_discrete_poles(plscf, halves, order) + decay, exact)
         checks.append(
             _pole_check(
                 "judge pyOMA2",

@@ -4,8 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from vibroimpact.config.changed_keys import changed_config
-from vibroimpact.config.reading import check_config
+from vibroimpact.config.reading import changed_config, check_config
 from vibroimpact.config.structure import UTube
 from vibroimpact.geometry.sections import outer_width
 from vibroimpact.identify.spectra.welch import psd_statistics, segment_spectra

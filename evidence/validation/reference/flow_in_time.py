@@ -17,9 +17,8 @@ from scipy.linalg import solve_continuous_lyapunov
 from scipy.optimize import brentq
 
 from evidence.validation.check import Check
-from vibroimpact.config.changed_keys import changed_config
 from vibroimpact.config.flow import ConnorsForce, NegativeDamping, QuasiSteady
-from vibroimpact.config.reading import load_config
+from vibroimpact.config.reading import changed_config, load_config
 from vibroimpact.config.schema import Config
 from vibroimpact.excitation.fluid_elastic import FluidForce, fluid_force
 from vibroimpact.flow.coupled import (

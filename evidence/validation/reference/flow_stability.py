@@ -9,8 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from evidence.validation.check import Check
-from vibroimpact.config.changed_keys import changed_config
-from vibroimpact.config.reading import load_config
+from vibroimpact.config.reading import changed_config, load_config
 from vibroimpact.config.schema import Config
 from vibroimpact.flow.along import tube_in_flow
 from vibroimpact.flow.critical_velocity import tema_factor

@@ -5,8 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from evidence.validation.check import Check
-from vibroimpact.config.changed_keys import changed_config
-from vibroimpact.config.reading import load_config
+from vibroimpact.config.reading import changed_config, load_config
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.study.cases import all_cases, load_values
 from vibroimpact.study.simulation import simulate_cases

@@ -230,14 +230,9 @@ def with_no_force(campaign: xr.Dataset) -> xr.Dataset:
 
 def decode_texts(campaign: xr.Dataset) -> xr.Dataset:
     """Return the Dataset with its texts as str, however netCDF stored them (bytes, padded, ...)."""
+    as_text = np.vectorize(_text, otypes=[object])
     texts = {
-        name: (
-            variable.dims,
-            np.array([_text(value) for value in variable.values.flat], dtype=object).reshape(
-                variable.shape
-            ),
-            variable.attrs,
-        )
+        name: (variable.dims, as_text(variable.values), variable.attrs)
         for name, variable in campaign.variables.items()
         if variable.dtype.kind in "SUO"
     }
@@ -355,22 +350,17 @@ def channel_at(campaign: xr.Dataset, position: ArrayLike, direction: ArrayLike, 
     Raises CampaignError when there is none within 5 mm; the message lists the channels.
     """
     axis = np.asarray(direction, float) / np.linalg.norm(direction)
-    distance = np.linalg.norm(
-        campaign["channel_point"].values - np.asarray(position, float), axis=1
-    )
+    place = np.asarray(position, float)
+    distance = np.linalg.norm(campaign["channel_point"].values - place, axis=1)
     along = np.abs(campaign["channel_direction"].values @ axis) > PARALLEL
-    usable = along & (campaign["channel_kind"].values == kind) & (distance < SAME_POINT_M)
+    kinds = campaign["channel_kind"].values
+    usable = along & (kinds == kind) & (distance < SAME_POINT_M)
     if not usable.any():
-        known = ", ".join(
-            f"{name} ({kind})"
-            for name, kind in zip(
-                campaign["channel_name"].values, campaign["channel_kind"].values, strict=True
-            )
-        )
-        point = np.round(np.asarray(position, float), 4).tolist()
+        channels = zip(campaign["channel_name"].values, kinds, strict=True)
         raise CampaignError(
             f"the campaign has no channel of kind {kind} within {SAME_POINT_M * 1e3:g} mm of"
-            f" {point} m along {np.round(axis, 3).tolist()}: it has {known}"
+            f" {np.round(place, 4).tolist()} m along {np.round(axis, 3).tolist()}: it has "
+            + ", ".join(f"{name} ({own})" for name, own in channels)
         )
     return int(np.argmin(np.where(usable, distance, np.inf)))
 

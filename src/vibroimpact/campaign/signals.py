@@ -13,14 +13,7 @@ import xarray as xr
 from vibroimpact.identify.spectra.periodic_lines import PeriodError, find_period
 from vibroimpact.identify.spectra.welch import SegmentSpectra, segment_spectra
 
-from .file import (
-    CampaignError,
-    band_of,
-    channel_factor,
-    force_factor,
-    load_of,
-    measured_values,
-)
+from .file import CampaignError, band_of, channel_factor, force_factor, load_of, measured_values
 from .force_kinds import force_kinds
 
 SEGMENT_S = 8.0
@@ -124,18 +117,11 @@ class CampaignSignals:
 
     def lowest(self) -> int | None:
         """Return the record of the lowest load with a finite force and response, or None."""
-        order = np.argsort(self.load_rms, kind="stable")
-        return next(
-            (
-                int(record)
-                for record in order
-                if self.forces
-                and np.isfinite(self.force[record][0]).all()
-                and self.force[record][0].any()
-                and self.finite(record).any()
-            ),
-            None,
-        )
+        for record in np.argsort(self.load_rms, kind="stable").tolist() if self.forces else ():
+            force = self.force[record][0]
+            if np.isfinite(force).all() and force.any() and self.finite(record).any():
+                return record
+        return None
 
     def finite(self, record: int) -> np.ndarray:
         """Return (channel,) whether all samples of a channel of a record are finite."""
@@ -147,12 +133,10 @@ def campaign_signals(campaign: xr.Dataset) -> CampaignSignals:
     factors, faults = _factors(campaign, campaign.sizes["channel"], channel_factor)
     force_factors, force_faults = _factors(campaign, campaign.sizes["force_channel"], force_factor)
     records, rate = range(campaign.sizes["record"]), float(campaign.attrs["sampling_frequency"])
-    force = [
-        measured_values(campaign, "force", record) * force_factors[:, None] for record in records
-    ]
-    response = [
-        measured_values(campaign, "response", record) * factors[:, None] for record in records
-    ]
+    force, response = (
+        [measured_values(campaign, name, record) * own[:, None] for record in records]
+        for name, own in (("force", force_factors), ("response", factors))
+    )
     band = band_of(campaign.attrs)
     found = [load_of(each[0], rate, band) if each.size else np.nan for each in force]
     loads = zip(campaign["load_rms"].values.astype(float).tolist(), found, strict=True)
@@ -334,10 +318,8 @@ def _excited(psd: np.ndarray) -> np.ndarray:
     It does if its PSD is above EXCITED_SHARE of the PSD above which half of its power lies.
     """
     order = np.sort(psd[1:])[::-1]
-    typical = (
-        order[np.searchsorted(np.cumsum(order), 0.5 * order.sum())] if order.sum() > 0.0 else np.inf
-    )
-    kept = psd > EXCITED_SHARE * typical
+    middle = np.searchsorted(np.cumsum(order), 0.5 * order.sum())
+    kept = psd > EXCITED_SHARE * (order[middle] if order.sum() > 0.0 else np.inf)
     kept[0] = False
     return kept
 
@@ -370,17 +352,12 @@ def excited_band(force: np.ndarray, rate: float) -> tuple[float, float]:
         force = force / np.where(rms > 0.0, rms, 1.0)
     for series in force.reshape(-1, force.shape[-1]):
         for first in range(0, max(len(series) - length, 0) + 1, length // 2):
-            power += (
-                np.abs(np.fft.rfft(window * np.resize(series[first : first + length], length))) ** 2
-            )
+            part = np.resize(series[first : first + length], length)
+            power += np.abs(np.fft.rfft(window * part)) ** 2
     frequency = np.fft.rfftfreq(length, 1.0 / rate)
     smooth = np.convolve(power, np.ones(5) / 5.0, mode="same")
-    inside = (
-        np.flatnonzero(
-            smooth[1:] > EXCITED_PSD * np.median(np.sort(smooth[1:])[-len(smooth) // 50 :])
-        )
-        + 1
-    )
+    largest = np.median(np.sort(smooth[1:])[-len(smooth) // 50 :])
+    inside = np.flatnonzero(smooth[1:] > EXCITED_PSD * largest) + 1
     low, high = frequency[inside[0]] + 0.5, frequency[inside[-1]] - 0.5
     if abs(low - DEFAULT_BAND_HZ[0]) < 1.5 and abs(high - DEFAULT_BAND_HZ[1]) < 3.0:
         return DEFAULT_BAND_HZ

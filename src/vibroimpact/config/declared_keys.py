@@ -202,8 +202,7 @@ def _default(field: FieldInfo) -> str | None:
     if default is PydanticUndefined:
         return None
     if isinstance(default, Section):
-        given = default.model_dump(mode="json", exclude_unset=True)
-        return _written(given)
+        default = default.model_dump(mode="json", exclude_unset=True)
     return _written(default)
 
 

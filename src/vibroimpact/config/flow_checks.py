@@ -1,23 +1,15 @@
 """The checks of a flow across the tube."""
 
-from vibroimpact.geometry.centreline import Centreline
 from vibroimpact.geometry.sections import outer_width
 
 from .key_problem import Problem, Problems
 from .stage_settings import ConfigPart
-from .turbulence_checks import field_of_section, points_of_spectrum
+from .turbulence_checks import points_of_spectrum
 
 
 def acts_along_a_tube(other: ConfigPart, flow: ConfigPart) -> Problems:
     """Yield a problem: a flow acts along a tube, and this structure is none."""
     yield Problem("flow", f"acts along a tube, structure.kind is {other.kind}: leave it out", "...")
-
-
-def field(line: Centreline, flow: ConfigPart) -> Problems:
-    """Yield a problem unless the stretches of the flow are on the tube and do not overlap, and the
-    fluid-elastic force is across the tube wherever it acts.
-    """
-    yield from field_of_section(line, flow, "flow")
 
 
 def pitch(tube: ConfigPart, flow: ConfigPart) -> Problems:

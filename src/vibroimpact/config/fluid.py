@@ -16,10 +16,8 @@ from .mixture import Mixture, TwoPhaseDamping, given_or_mixed
 from .quantities import (
     By_kind,
     Diameter_m,
-    List,
     Number,
-    One,
-    One_or_list,
+    One_or,
     Position,
     Range,
     Section,
@@ -86,10 +84,8 @@ class AddedMassCoefficient(Section):
     """An added mass that is known, for any cross-section. It brings no damping."""
 
     kind: Literal["coefficient"] = Field(description="This kind of confinement.")
-    added_mass_coefficient: Annotated[
-        Annotated[Coefficient_of_mass, One]
-        | Annotated[Annotated[tuple[Coefficient_of_mass, ...], Two_axes], List],
-        One_or_list,
+    added_mass_coefficient: One_or[
+        Coefficient_of_mass, Annotated[tuple[Coefficient_of_mass, ...], Two_axes]
     ] = Field(
         description="Added mass over the mass of the fluid that the outline displaces: one value,"
         " or a list for motion along the first and the second axis of the section.",
@@ -106,9 +102,7 @@ class FluidInside(Section):
     temperature_C: Temperature_C | None = Field(None, description=TEMPERATURE, examples=[20.0])
     mixture: Mixture | None = Field(None, description=MIXTURE)
     density_kg_per_m3: Fluid_density | None = Field(
-        None,
-        description=f"Density. {OR_NAMED[:-1]}, or of the mixture.",
-        examples=[998.2],
+        None, description=f"Density. {OR_NAMED[:-1]}, or of the mixture.", examples=[998.2]
     )
     from_m: Position | None = Field(None, description=FROM, examples=[[-0.3, 0.0, 0.0]])
     to_m: Position | None = Field(None, description=TO, examples=[[-0.3, 0.0, 0.5]])
@@ -139,9 +133,7 @@ class FluidOutside(FluidInside):
         Unconfined(kind="unconfined"), description="The confinement of the fluid."
     )
     viscosity_Pa_s: Viscosity | None = Field(
-        None,
-        description=f"Dynamic viscosity, 0 for no damping. {OR_NAMED}",
-        examples=[1.0e-3],
+        None, description=f"Dynamic viscosity, 0 for no damping. {OR_NAMED}", examples=[1.0e-3]
     )
     two_phase_damping: TwoPhaseDamping | None = Field(
         None, description="Damping by the two phases of the mixture; null for none."

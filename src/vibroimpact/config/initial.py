@@ -12,6 +12,8 @@ NUMBER = (
     "Number of the mode, counted from 1 in the order of the frequencies, among those that move the"
     " point along the direction. The modes are those of the structure without contact."
 )
+AT_M = Field(description="Position, within 5 mm of the centreline.", examples=[[0.0, 0.0, 0.5]])
+VALUES = Field(description="The values, the first at the start of the tube, the last at its end.")
 Mode_number = Annotated[Whole, Range("modes are counted from 1", at_least=1, at_most=10**4)]
 Amplitude = Annotated[
     Number, Range("give the amplitude, with its sign", at_least=-100, at_most=100)
@@ -76,9 +78,7 @@ class ModeVelocity(Mode):
 class PlaceDisplacement(Section):
     """The displacement of a tube at a place."""
 
-    at_m: Vector = Field(
-        description="Position, within 5 mm of the centreline.", examples=[[0.0, 0.0, 0.5]]
-    )
+    at_m: Vector = AT_M
     displacement_m: Vector = Field(
         description="Displacement along x, y and z.", examples=[[1.0e-3, 0.0, 0.0]]
     )
@@ -87,9 +87,7 @@ class PlaceDisplacement(Section):
 class PlaceVelocity(Section):
     """The velocity of a tube at a place."""
 
-    at_m: Vector = Field(
-        description="Position, within 5 mm of the centreline.", examples=[[0.0, 0.0, 0.5]]
-    )
+    at_m: Vector = AT_M
     velocity_m_per_s: Vector = Field(
         description="Velocity along x, y and z.", examples=[[0.1, 0.0, 0.0]]
     )
@@ -101,9 +99,7 @@ class PlacesDisplacement(Section):
     """
 
     kind: Literal["places"] = Field(description="This kind of field.")
-    values: Annotated[tuple[PlaceDisplacement, ...], Field(min_length=2)] = Field(
-        description="The values, the first at the start of the tube, the last at its end."
-    )
+    values: Annotated[tuple[PlaceDisplacement, ...], Field(min_length=2)] = VALUES
 
 
 class PlacesVelocity(Section):
@@ -112,9 +108,7 @@ class PlacesVelocity(Section):
     """
 
     kind: Literal["places"] = Field(description="This kind of field.")
-    values: Annotated[tuple[PlaceVelocity, ...], Field(min_length=2)] = Field(
-        description="The values, the first at the start of the tube, the last at its end."
-    )
+    values: Annotated[tuple[PlaceVelocity, ...], Field(min_length=2)] = VALUES
 
 
 class Initial(Section):

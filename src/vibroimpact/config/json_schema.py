@@ -15,11 +15,7 @@ def json_schema() -> dict[str, Any]:
     Every key has a description, and every number its `unit`.
     """
     schema = Config.model_json_schema(schema_generator=_WithUnits)
-    return {
-        "$schema": GenerateJsonSchema.schema_dialect,
-        "title": "vibroimpact study",
-        **schema,
-    }
+    return {"$schema": GenerateJsonSchema.schema_dialect, "title": "vibroimpact study", **schema}
 
 
 class _WithUnits(GenerateJsonSchema):

@@ -26,10 +26,6 @@ def _is_band(value: Any) -> bool:
     return _is_list(value, _is_number) and len(value) == 2 and 0.0 <= value[0] < value[1]
 
 
-def _is_place_name(value: Any) -> bool:
-    return PLACE_NAME.fullmatch(str(value)) is not None and value != ELSEWHERE
-
-
 def _are_coefficients(value: Any) -> bool:
     return isinstance(value, dict) and all(map(_is_number, value.values())) and any(value.values())
 
@@ -67,7 +63,7 @@ Channel_name = Annotated[
 Place_name = Annotated[
     str,
     only(
-        _is_place_name,
+        lambda value: PLACE_NAME.fullmatch(str(value)) is not None and value != ELSEWHERE,
         "must begin with a letter and hold letters, digits, _ and - only, and not be"
         f" '{ELSEWHERE}': it becomes the name of files",
     ),

@@ -12,9 +12,7 @@ from pydantic_core import PydanticCustomError
 from .quantities import Ascending, Length, Number, Range, Section, Unit
 
 Share = Annotated[
-    Number,
-    Range("a fraction, not per cent: 85 % is 0.85", at_least=0, at_most=1),
-    Unit("1"),
+    Number, Range("a fraction, not per cent: 85 % is 0.85", at_least=0, at_most=1), Unit("1")
 ]
 Phase_density = Annotated[
     Number, Range("in kg/m3? 1 g/cm3 is 1000", above=0, at_most=2e4), Unit("kg/m³")

@@ -4,35 +4,25 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from .quantities import (
-    By_kind,
-    Direction,
-    Non_negative,
-    Not_empty,
-    Number,
-    Range,
-    Section,
-    Whole,
-)
-
-ANGLE = (
-    "{what}, in degrees from the support's first transverse direction towards the second; null"
-    " where normal gives it."
-)
-NORMAL = (
-    "{what}, as a vector in global axes across the tube, from the obstacle's centre; null if"
-    " angle_deg gives it. On a bend it is known without knowing the transverse directions."
-)
+from .quantities import By_kind, Direction, Non_negative, Not_empty, Number, Range, Section, Whole
 
 
 def _angle(what: str) -> Any:
     """Return the declaration of an angle_deg."""
-    return Field(None, description=ANGLE.format(what=what), examples=[30.0])
+    told = (
+        f"{what}, in degrees from the support's first transverse direction towards the second; null"
+        " where normal gives it."
+    )
+    return Field(None, description=told, examples=[30.0])
 
 
 def _normal(what: str) -> Any:
     """Return the declaration of a normal."""
-    return Field(None, description=NORMAL.format(what=what), examples=[[0.0, 1.0, 0.0]])
+    told = (
+        f"{what}, as a vector in global axes across the tube, from the obstacle's centre; null if"
+        " angle_deg gives it. On a bend it is known without knowing the transverse directions."
+    )
+    return Field(None, description=told, examples=[[0.0, 1.0, 0.0]])
 
 
 class Circular(Section):

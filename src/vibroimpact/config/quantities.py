@@ -213,9 +213,7 @@ Positive_factor = Annotated[
 Coefficient = Annotated[Number, Range("a damping coefficient is not negative", at_least=0)]
 Non_negative = Annotated[Number, Range("give 0 for none", at_least=0)]
 Damping_ratio = Annotated[
-    Number,
-    Range("a fraction, not per cent: 1.5 % is 0.015", at_least=0, below=0.3),
-    Unit("1"),
+    Number, Range("a fraction, not per cent: 1.5 % is 0.015", at_least=0, below=0.3), Unit("1")
 ]
 Frequency_Hz = Annotated[Number, Range("give the frequency in Hz", above=0, at_most=1e7)]
 Lowest_frequency_Hz = Annotated[Number, Range("give the frequency in Hz", at_least=0, at_most=1e7)]
@@ -253,10 +251,10 @@ def _shape_at(depth: int) -> Callable[[Any], str]:
     return shape
 
 
-# A key that takes one value or a list of them is One_or_more[X]; with other lists it is
-# Annotated[Annotated[X, One] | Annotated[..., List], One_or_list].
+# A key that takes one value or a list of them is One_or_more[X]; with other lists, One_or[X, Y].
 One, List = Tag("one"), Tag("list")
-One_or_list = Discriminator(_shape_at(0))
 X = TypeVar("X")
-One_or_more = Annotated[Annotated[X, One] | Annotated[tuple[X, ...], List], One_or_list]
+Y = TypeVar("Y")
+One_or = Annotated[Annotated[X, One] | Annotated[Y, List], Discriminator(_shape_at(0))]
+One_or_more = One_or[X, tuple[X, ...]]
 One_or_list_of_pairs = Discriminator(_shape_at(1))

@@ -43,6 +43,26 @@ def config_of(config: Config | str | os.PathLike[str]) -> Config:
     return config
 
 
+def changed_config(config: Config | str | os.PathLike[str], values: Mapping[str, Any]) -> Config:
+    """Return the checked Config with the dotted keys of `values` changed.
+
+    config: a Config, or the path of a file.
+    values: {key: value}, such as {"record.duration_s": 24.0}. "supports.points" changes the key in
+        every support.
+    Raises ConfigError as check_config does, KeyError for a section that does not exist.
+    """
+    config = config_of(config)
+    data = config.model_dump(mode="json")
+    for key, value in values.items():
+        *sections, last = key.split(".")
+        level = data
+        for section in sections:
+            level = level[section]
+        for part in level if isinstance(level, list) else [level]:
+            part[last] = value
+    return check_config(data, f"{config.study} with {', '.join(values)} changed")
+
+
 def check_config(data: dict[str, Any], source: str) -> Config:
     """Return the Config of a mapping as YAML gives it.
 

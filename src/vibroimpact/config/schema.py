@@ -20,12 +20,10 @@ from .quantities import (
     Checked,
     Frequency_Hz,
     Length,
-    List,
     Name,
     Not_empty,
     Number,
-    One,
-    One_or_list,
+    One_or,
     Pattern,
     Position,
     Positive_factor,
@@ -41,6 +39,7 @@ from .supports import LocalElement, PointMass, Support
 from .wear import Wear
 
 Gap_m = Annotated[Number, Range("give the radial clearance in metres", above=0, at_most=10)]
+Names = Annotated[tuple[Name, ...], Not_empty]
 Stress_Pa = Annotated[Number, Range("in Pa? 240 MPa is 240.0e6", at_least=1e4, at_most=1e13)]
 Force_N = Annotated[Number, Range("give the force in newtons RMS", above=0, at_most=1e6)]
 Duration_s = Annotated[Number, Range("give the duration in seconds", above=0, at_most=1e5)]
@@ -51,9 +50,7 @@ Fraction_of_gap = Annotated[
     Number, Range("a small fraction of the gap: 1.0e-6", at_least=0, at_most=0.1), Unit("1")
 ]
 Overlap = Annotated[
-    Number,
-    Range("a fraction, not per cent: 65 % is 0.65", at_least=0, at_most=0.95),
-    Unit("1"),
+    Number, Range("a fraction, not per cent: 65 % is 0.65", at_least=0, at_most=0.95), Unit("1")
 ]
 Stiffness_range = Annotated[
     tuple[Stiffness, ...],
@@ -152,10 +149,7 @@ class LogSpaced(Section):
 class Grid(Section):
     """The cases of the study: every load with every gap and every seed."""
 
-    load_rms_N: Annotated[
-        Annotated[LogSpaced, One] | Annotated[Annotated[tuple[Force_N, ...], Not_empty], List],
-        One_or_list,
-    ] = Field(
+    load_rms_N: One_or[LogSpaced, Annotated[tuple[Force_N, ...], Not_empty]] = Field(
         description="Loads: the RMS of the force in N, or of the acceleration in m/s² for base"
         " motion. A list, or first, last and count of log-spaced values.",
         examples=[[0.5, 2.0, 5.0, 20.0]],
@@ -174,9 +168,7 @@ class Grid(Section):
 class Sensors(Section):
     """The recorded quantities, at named points: displacement and acceleration."""
 
-    points: Annotated[tuple[Name, ...], Not_empty] = Field(
-        description="Named points.", examples=[["apex", "bend_45"]]
-    )
+    points: Names = Field(description="Named points.", examples=[["apex", "bend_45"]])
     directions: Annotated[tuple[Axis, ...], Not_empty] = Field(
         ("x", "y"), description="Directions recorded at each point."
     )
@@ -240,13 +232,12 @@ class Lscf(Section):
 
     band_Hz: Band_Hz = Field((8.0, 60.0), description="Band that the model is fitted in.")
     max_order: Annotated[
-        Whole,
-        Range("24 is enough for a band with a handful of modes", at_least=2, at_most=200),
+        Whole, Range("24 is enough for a band with a handful of modes", at_least=2, at_most=200)
     ] = Field(
         24,
         description="Highest order of the polynomial, which the stabilisation diagram goes up to.",
     )
-    references: Annotated[tuple[Name, ...], Not_empty] = Field(
+    references: Names = Field(
         description="Reference points of the cross-spectra, all of them recorded.",
         examples=[["apex", "bend_45"]],
     )
@@ -277,11 +268,7 @@ class Identification(Section):
         description="Range of the equivalent stiffness that is searched. An estimate outside it is"
         " reported as unresolved.",
     )
-    groups: Annotated[
-        Annotated[Literal["all", "each"], One]
-        | Annotated[tuple[Annotated[tuple[Name, ...], Not_empty], ...], List],
-        One_or_list,
-    ] = Field(
+    groups: One_or[Literal["all", "each"], tuple[Names, ...]] = Field(
         "all",
         description="Supports that share one equivalent stiffness and damping in each direction:"
         " `all`, `each` for itself, or a list of groups, each a list of names of supports. A"

@@ -236,10 +236,7 @@ class Matrices(Section):
     )
     points: dict[
         Name,
-        dict[
-            Axis,
-            Annotated[Whole, Range("dofs are counted from 0", at_least=0, at_most=10**7)],
-        ],
+        dict[Axis, Annotated[Whole, Range("dofs are counted from 0", at_least=0, at_most=10**7)]],
     ] = Field(
         description="Named points: for each point, the degree of freedom (row of the matrices,"
         " counted from 0) that is its displacement along x, y or z. A direction that is left out"
@@ -254,9 +251,7 @@ class MeasuredMode(Section):
 
     frequency_Hz: Frequency_Hz = Field(description="Natural frequency.", examples=[7.3])
     damping_ratio: Annotated[
-        Number,
-        Range("a fraction, not per cent: 1.5 % is 0.015", at_least=0, at_most=10),
-        Unit("1"),
+        Number, Range("a fraction, not per cent: 1.5 % is 0.015", at_least=0, at_most=10), Unit("1")
     ] = Field(description="Damping ratio, as a fraction.", examples=[0.02])
     shape: dict[Name, dict[Axis, Annotated[Number, Unit("kg^-1/2")]]] = Field(
         description="Mode shape: for each named point, its displacement along x, y or z, scaled to"

@@ -172,8 +172,7 @@ class Support(Section):
     )
     profile: Profile = Field(Circular(kind="circular"), description="Shape of the obstacle.")
     plate: Plate | None = Field(
-        None,
-        description="Flexible plate that carries the support; null for a rigid one.",
+        None, description="Flexible plate that carries the support; null for a rigid one."
     )
 
 

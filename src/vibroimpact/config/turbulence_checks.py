@@ -24,14 +24,7 @@ def needs_a_tube(other: ConfigPart, turbulence: ConfigPart) -> Problems:
     )
 
 
-def field(line: Centreline, turbulence: ConfigPart) -> Problems:
-    """Yield a problem unless the stretches of turbulence are on the tube and do not overlap, and
-    its direction is across the tube wherever it acts.
-    """
-    yield from field_of_section(line, turbulence, "excitation")
-
-
-def field_of_section(line: Centreline, flow: ConfigPart, section: str) -> Problems:
+def field(line: Centreline, flow: ConfigPart, section: str) -> Problems:
     """Yield a problem unless the stretches of a section are on the tube and do not overlap, and its
     direction is across the tube wherever it acts.
     """
@@ -94,24 +87,17 @@ def points_of_spectrum(tube: ConfigPart, turbulence: ConfigPart) -> Problems:
         scale = outer_width(tube.section) / spectrum.velocity_m_per_s
     else:
         return
-    yield from _points(f"excitation.spectrum.{key}", places, values)
+    place = f"excitation.spectrum.{key}"
+    if len(places) != len(values):
+        told = f"places have {len(values)} values of the PSD: give one value per place"
+        yield Problem(place, told, len(places))
+    if any(after <= before for before, after in pairwise(places)):
+        yield Problem(place, "is not in ascending order: sort the points, each once")
     low, high = (scale * end for end in turbulence.band_Hz)
     if places[0] > low * (1 + TOLERANCE) or places[-1] < high * (1 - TOLERANCE):
         yield Problem(
-            f"excitation.spectrum.{key}",
+            place,
             f"does not cover excitation.band_Hz, which is {low:.4g} to {high:.4g} on this axis:"
             " narrow the band or add points",
             [places[0], places[-1]],
         )
-
-
-def _points(place: str, places: Sequence[float], values: Sequence[float]) -> Problems:
-    """Yield a problem unless points are ascending and have one value each."""
-    if len(places) != len(values):
-        yield Problem(
-            place,
-            f"places have {len(values)} values of the PSD: give one value per place",
-            len(places),
-        )
-    if any(after <= before for before, after in pairwise(places)):
-        yield Problem(place, "is not in ascending order: sort the points, each once")

@@ -38,18 +38,12 @@ PLAIN_WORDS = (
         " a list",
     ),
     ("did not find expected key", "no key where one is expected: write it as key: value"),
-    (
-        "unexpected end of stream",
-        "a quote is not closed before the end of the file: close it",
-    ),
+    ("unexpected end of stream", "a quote is not closed before the end of the file: close it"),
     ("is given twice", "{problem}: keep one of the two"),
     *((told, "{problem}") for told in OF_THE_LOADER),
     ("found unhashable key", "a list or a block as a key: write a text before the colon"),
     ("found undefined alias", "an alias (*name) without its anchor: write &name at its definition"),
-    (
-        "cannot start any token",
-        "a character that can not begin a value: put the text in quotes",
-    ),
+    ("cannot start any token", "a character that can not begin a value: put the text in quotes"),
     ("expected a single document", "a second document begins (---): keep one document in the file"),
 )
 ELSE = "check indentation, colons, brackets and quotes there"

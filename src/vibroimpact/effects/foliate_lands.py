@@ -1,9 +1,10 @@
 """A hole of flat lands: the tube meets four planes in place of a circle."""
 
 import math
+from dataclasses import replace
 
-from . import places
-from .effect import Effect, Parameter
+from . import foliate_obstacle, places
+from .effect import Effect
 from .foliate_obstacle import LOBES
 
 EFFECT = Effect(
@@ -17,17 +18,7 @@ EFFECT = Effect(
         " normal of the plane"
     ),
     source="limit of the lobes of foliate_obstacle",
-    parameters=(
-        Parameter(
-            "angle",
-            "rad",
-            0.0,
-            1.5707963267948966,
-            None,
-            log=False,
-            meaning="direction of the first land",
-        ),
-    ),
+    parameters=(replace(foliate_obstacle.EFFECT.parameters[1], neutral=None),),
     apply=places.at_supports(
         lambda own: {
             "profile": {

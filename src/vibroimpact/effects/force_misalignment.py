@@ -11,15 +11,8 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
     tangent at the force.
     """
     turned = values["excitation"].get("turn_deg", 0.0) + math.degrees(parameters["angle"])
-    return values | {
-        "excitation": (
-            values["excitation"]
-            | {
-                "turn_deg": turned,
-                "turn_about": location.removeprefix("about_"),
-            }
-        )
-    }
+    turn = {"turn_deg": turned, "turn_about": location.removeprefix("about_")}
+    return values | {"excitation": values["excitation"] | turn}
 
 
 EFFECT = Effect(

@@ -6,10 +6,8 @@ from .effect import Effect, Parameter, Values
 def apply(values: Values, parameters: dict[str, float], location: str) -> Values:
     """Return the configuration with the frequency of mode_<n> multiplied by a factor."""
     mode = int(location.removeprefix("mode_"))
-    factors = [
-        *values["mode_frequency_factors"],
-        *[1.0] * (mode - len(values["mode_frequency_factors"])),
-    ]
+    factors = [*values["mode_frequency_factors"]]
+    factors += [1.0] * (mode - len(factors))
     factors[mode - 1] *= parameters["factor"]
     return values | {"mode_frequency_factors": factors}
 
@@ -22,9 +20,7 @@ EFFECT = Effect(
     law="frequency of one mode = factor times the computed one",
     source="model error of the linear structure",
     parameters=(
-        Parameter(
-            "factor", "1", 0.7, 1.4, 1.0, log=True, meaning="frequency over the computed one"
-        ),
+        Parameter("factor", "1", 0.7, 1.4, 1.0, meaning="frequency over the computed one"),
     ),
     apply=apply,
     linear=True,

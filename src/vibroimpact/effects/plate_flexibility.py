@@ -20,15 +20,7 @@ EFFECT = Effect(
             over="mass",
             meaning="stiffness of the plate",
         ),  # the plate's own frequency
-        Parameter(
-            "mass",
-            "kg",
-            0.01,
-            3.0,
-            None,
-            per="mass",
-            meaning="mass of the plate",
-        ),
+        Parameter("mass", "kg", 0.01, 3.0, None, per="mass", meaning="mass of the plate"),
         Parameter("damping_ratio", "1", 0.005, 0.29, None, meaning="damping ratio of the plate"),
     ),
     apply=places.at_supports(

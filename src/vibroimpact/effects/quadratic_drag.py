@@ -15,16 +15,10 @@ def apply(values: Values, parameters: dict[str, float], location: str) -> Values
     coefficient = parameters["coefficient"] * length
     for name, place in points.items():
         for number, direction in enumerate(places.axes_across(values, place)):
-            drag = {
-                "drag_N_s2_per_m2": coefficient,
-                "drag_partner": f"drag_{name}_{'yx'[number]}",
-            }
+            drag = {"drag_N_s2_per_m2": coefficient, "drag_partner": f"drag_{name}_{'yx'[number]}"}
+            along = [float(x) for x in direction]
             values = places.with_element(
-                values,
-                f"drag_{name}_{'xy'[number]}",
-                name,
-                [float(x) for x in direction],
-                **drag if coefficient else {},
+                values, f"drag_{name}_{'xy'[number]}", name, along, **drag if coefficient else {}
             )
     return values
 

@@ -21,14 +21,7 @@ EFFECT = Effect(
             meaning="stiffness below the limit",
         ),
         Parameter(
-            "limit",
-            "N",
-            0.02,
-            50.0,
-            0.0,
-            per="load",
-            gain_power=1.0,
-            meaning="largest force",
+            "limit", "N", 0.02, 50.0, 0.0, per="load", gain_power=1.0, meaning="largest force"
         ),
     ),
     apply=places.at_a_point(

@@ -6,8 +6,6 @@ through one number per integral, its weighted part so far, and the double integr
 stretches is a product. Nothing needs to be resolved on the scale of the correlation length.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from functools import lru_cache
 

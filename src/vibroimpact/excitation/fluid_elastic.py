@@ -9,8 +9,6 @@ differential equations: eigenvalues, motion in time and energy balance share it,
 assumed, which contact would change.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -42,7 +40,7 @@ class FluidLaws:
     lag_rate: np.ndarray
 
     @classmethod
-    def neutral(cls) -> FluidLaws:
+    def neutral(cls) -> "FluidLaws":
         """Return the laws of no row."""
         return cls(*(np.zeros((0, 0) if "lag" in own.name else 0) for own in fields(cls)))
 

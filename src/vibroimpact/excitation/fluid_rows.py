@@ -5,8 +5,6 @@ overlap O = rho/2 int phi phi^T ds. Gauss points would be rows sqrt(weight) phi.
 O, scaled by the resistance of each mode, give the fewest rows for the same error.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 
@@ -15,13 +13,12 @@ import numpy as np
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.geometry.centreline import Centreline
 from vibroimpact.geometry.sections import outer_width
+from vibroimpact.structure.beam_elements import GAUSS_POINTS, GAUSS_WEIGHTS
 from vibroimpact.structure.tube import TubeStructure
 
 from .fluid_elastic import FluidForce, fluid_force
 from .turbulence import cut_at_nodes, directions, shapes_at
 
-POINTS, WEIGHTS = np.polynomial.legendre.leggauss(4)  # exact for the squares of cubic shapes
-POINTS, WEIGHTS = 0.5 * (POINTS + 1.0), 0.5 * WEIGHTS
 # The omitted part changes no squared frequency, with any support closed, by more than this share,
 # and no damping ratio by more than half of it.
 TOLERANCE = 1.0e-3
@@ -105,7 +102,8 @@ def _overlaps(
                 (begin, end, density) for begin, end, other, density in acting if other == factor
             )
             for begin, end, density in cut_at_nodes(own, structure.node_arc_length):
-                for point, weight in zip(POINTS, WEIGHTS, strict=True):
+                # four points are exact for the squares of cubic shapes
+                for point, weight in zip(GAUSS_POINTS, GAUSS_WEIGHTS, strict=True):
                     place = begin + (end - begin) * point
                     motion = across(place) @ shapes_at(structure, place, shapes)
                     share = 0.5 * density * weight * (end - begin)

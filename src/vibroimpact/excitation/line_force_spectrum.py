@@ -1,7 +1,5 @@
 """The spectrum of a turbulent force per length: dimensionless spectra and tables."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -7,8 +7,6 @@ spectrum, and the covariance of the forces on the modes (with the joint acceptan
 on its diagonal) is reproduced by independent signals of that spectrum, each with its own shape.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 
 import numpy as np

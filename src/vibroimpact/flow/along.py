@@ -17,7 +17,7 @@ from vibroimpact.geometry.sections import outer_width
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.reduction.reduced_model import build_model
 from vibroimpact.structure.beam_elements import section_beam
-from vibroimpact.structure.fluid import beams_in_fluid, fluid_stretches
+from vibroimpact.structure.fluid import beam_in_fluid, fluid_stretches
 
 from .coupled import Zone
 from .critical_velocity import Along
@@ -73,7 +73,8 @@ def tube_in_flow(config: Config, flow: Flow) -> TubeInFlow:
     }
     structure: ConfigPart = config.structure
     beam = section_beam(structure.section, structure.material, structure.theory)
-    beams = beams_in_fluid(beam, fluid_stretches(structure, line), places)
+    stretches = fluid_stretches(structure, line)
+    beams = [beam_in_fluid(beam, stretches, place) for place in places]
     mass = [np.mean([plane.mass_per_length for plane in own.planes]) for own in beams]
     flowing = Along(weight, line.length, factor, density, np.array(mass))
     return TubeInFlow(model, outer_width(structure.section), flowing, along)

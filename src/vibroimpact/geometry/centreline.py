@@ -1,7 +1,5 @@
 """The centreline of a tube: straight and bend segments along an arc length."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """Directions: unit vectors, and the two directions across a tube."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -35,11 +33,7 @@ def transverse_directions(tangent: np.ndarray) -> np.ndarray:
     """
     aligned = np.abs(tangent)
     left_out = int(np.flatnonzero(aligned > aligned.max() - 1.0e-9)[-1])
-    first, second = (axis for axis in range(3) if axis != left_out)
-    e1 = np.eye(3)[first] - tangent[first] * tangent
-    e1 = unit_vector(e1)
-    e2 = np.eye(3)[second] - tangent[second] * tangent
-    return np.array([e1, unit_vector(e2 - (e2 @ e1) * e1)])
+    return carried_directions(np.delete(np.eye(3), left_out, axis=0), tangent)
 
 
 def carried_directions(directions: np.ndarray, tangent: np.ndarray) -> np.ndarray:

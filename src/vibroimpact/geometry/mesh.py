@@ -1,7 +1,5 @@
 """The nodes of the finite-element mesh along a centreline."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

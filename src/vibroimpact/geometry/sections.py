@@ -10,8 +10,6 @@ Sources:
   Mechanics 33 (1966) 335-340.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -126,16 +124,13 @@ def _rectangle(section: Any, poisson_ratio: float) -> SectionProperties:
 
 def _general(section: Any, poisson_ratio: float) -> SectionProperties:
     """Return the properties that the configuration states."""
-    first, second = section.second_moments_m4
-    shear_first, shear_second = section.shear_coefficients
-    fibre_first, fibre_second = section.outer_fibres_m
     enclosed = section.enclosed_area_m2
     return SectionProperties(
         area=section.area_m2,
-        second_moments=(first, second),
+        second_moments=section.second_moments_m4,
         torsion_constant=section.torsion_constant_m4,
-        shear_coefficients=(shear_first, shear_second),
-        outer_fibres=(fibre_first, fibre_second),
+        shear_coefficients=section.shear_coefficients,
+        outer_fibres=section.outer_fibres_m,
         enclosed_area=section.area_m2 if enclosed is None else enclosed,
     )
 

@@ -1,7 +1,5 @@
 """Which stretches of a tube a support takes, and the places of its contact points on them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -44,10 +42,11 @@ def support_spans(centreline: Centreline, support: Any) -> list[tuple[float, flo
 
     Raises ValueError when at_m, or the middle of a pair of bars, is off the tube.
     """
-    return [
-        _span(centreline, middle, support.height_m)
-        for middle in support_middles(centreline, support)
-    ]
+    half, spans = 0.5 * support.height_m, []
+    for middle in support_middles(centreline, support):
+        low, high = max(middle - half, 0.0), min(middle + half, centreline.length)
+        spans.append((_snapped(centreline, low), _snapped(centreline, high)))
+    return spans
 
 
 def contact_places(centreline: Centreline, support: Any) -> np.ndarray:
@@ -62,12 +61,6 @@ def contact_places(centreline: Centreline, support: Any) -> np.ndarray:
         return np.array(support_middles(centreline, support))
     spans = support_spans(centreline, support)
     return np.concatenate([np.linspace(*span, support.points) for span in spans])
-
-
-def _span(centreline: Centreline, middle: float, height: float) -> tuple[float, float]:
-    """Return (first, last) arc lengths in m of a height in m about a middle."""
-    low, high = max(middle - 0.5 * height, 0.0), min(middle + 0.5 * height, centreline.length)
-    return _snapped(centreline, low), _snapped(centreline, high)
 
 
 def _snapped(centreline: Centreline, place: float) -> float:

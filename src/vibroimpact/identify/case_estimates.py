@@ -12,15 +12,7 @@ from vibroimpact.reduction.modal_model import ModalModel
 
 from .broadband import BroadbandFit
 from .equivalent_support import equivalent_support
-from .estimate import (
-    FREQUENCY_ERROR,
-    Estimate,
-    flagged,
-    grade,
-    joined,
-    mark_weak,
-    unresolved,
-)
+from .estimate import FREQUENCY_ERROR, Estimate, flagged, grade, joined, mark_weak, unresolved
 from .guards import other_mode, peak_not_crossed
 from .ods import ShapeMatch
 from .operational_pole import OperationalPole
@@ -54,22 +46,14 @@ def estimate_from_pole(
         return unresolved(method, "no resonance could be fitted to the main peak")
     support = equivalent_support(tube.modes, fit.frequency, fit.damping_ratio)
     errors = standard_errors(support.jacobian @ fit.covariance @ support.jacobian.T)
-    estimate = Estimate(
-        method=method,
-        k=support.k,
-        k_standard_error=float(errors[0]),
-        c=support.c,
-        c_standard_error=float(errors[1]),
-        frequency=fit.frequency,
-        damping_ratio=fit.damping_ratio,
-    )
+    pole = (fit.frequency, fit.damping_ratio)
+    estimate = Estimate(method, support.k, float(errors[0]), support.c, float(errors[1]), *pole)
     model_error = abs(support.jacobian[0, 0]) * FREQUENCY_ERROR * fit.frequency
     limit = DAMPING_RATIO_LIMIT * fit.damping_ratio * abs(support.jacobian[1, 1])
     estimate = grade(
         estimate, model_error, tube.pole_error_at_zero, tube.layout.stiffness_range, limit
     )
     if np.isfinite(estimate.k):
-        pole = (fit.frequency, fit.damping_ratio)
         estimate = flagged(estimate, other_mode(tube.model, support.k, support.c, pole))
     return with_doubts(estimate, fit, tube.layout.seen_band_Hz)
 
@@ -163,15 +147,8 @@ def _linearised(
         return unresolved(method, "needs a force of flat PSD in a band").at(direction)
     load, gap = float(record.attrs["load_rms_N"]), float(record.attrs["gap_m"])
     case = statistical_linearisation(model, load, gap, tuple(config.excitation.band_Hz))
-    k = case.stiffness_of(direction)
+    k, pole = case.stiffness_of(direction), (case.frequency, case.damping_ratio)
     if not np.isfinite(k):
-        note = "needs a direction along an axis"
-        return unresolved(method, note, case.frequency, case.damping_ratio).at(direction)
-    predicted = Estimate(
-        method=method,
-        k=k,
-        k_standard_error=0.0,
-        frequency=case.frequency,
-        damping_ratio=case.damping_ratio,
-    ).at(direction)
+        return unresolved(method, "needs a direction along an axis", *pole).at(direction)
+    predicted = Estimate(method, k, 0.0, np.nan, np.nan, *pole).at(direction)
     return predicted if case.settled else mark_weak(predicted, "the iteration did not settle")

@@ -53,7 +53,11 @@ def equivalent_support(
     size = np.abs(stiffness)
     chosen = int(np.argmin(np.where(static > 0.0, size, np.inf) if stiffening else size))
     k, c = float(static[chosen]), float(damping[chosen])
-    slope = _compliance_slope(modes, pole, vectors[:, chosen]) / values[chosen] ** 2
+    vector = vectors[:, chosen]
+    # G is complex symmetric, so that the left eigenvector is the right one without conjugation.
+    modal = modes.contact @ vector
+    slope = -np.sum(modal**2 * (2.0 * pole + modes.damping) * modes.receptance(pole) ** 2)
+    slope = slope / np.sum(vector**2) / values[chosen] ** 2
     by_frequency = pole / frequency
     by_ratio = (
         2.0 * np.pi * frequency * (-1.0 - 1j * damping_ratio / np.sqrt(1.0 - damping_ratio**2))
@@ -67,13 +71,3 @@ def equivalent_support(
     # support.
     beyond_clamped = above_free and not stiffening and abs(k) > abs(c) * pole.imag
     return EquivalentSupport(float("inf") if beyond_clamped else k, c, np.array(columns).T)
-
-
-def _compliance_slope(modes: DrivenModes, pole: complex, vector: np.ndarray) -> complex:
-    """Return d mu / d lambda of an eigenvalue of the contact compliance.
-
-    G is complex symmetric, so that the left eigenvector is the right one without conjugation.
-    """
-    modal = modes.contact @ vector
-    slope = -np.sum(modal**2 * (2.0 * pole + modes.damping) * modes.receptance(pole) ** 2)
-    return slope / np.sum(vector**2)

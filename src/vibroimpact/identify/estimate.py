@@ -1,7 +1,5 @@
 """The estimate of an equivalent support by one method, and its quality."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
@@ -71,7 +69,7 @@ class Estimate:
     group: str = ""
     direction: str = ""
 
-    def at(self, support: SupportDirection) -> Estimate:
+    def at(self, support: SupportDirection) -> "Estimate":
         """Return the estimate as that of a group of supports in one direction."""
         return replace(self, group=support.group, direction=support.direction)
 
@@ -80,15 +78,8 @@ def unresolved(
     method: str, note: str, frequency: float = np.nan, damping_ratio: float = np.nan
 ) -> Estimate:
     """Return an unresolved Estimate, with the pole it may have."""
-    return Estimate(
-        method,
-        np.nan,
-        np.nan,
-        frequency=frequency,
-        damping_ratio=damping_ratio,
-        quality="unresolved",
-        note=note,
-    )
+    nothing = Estimate(method, np.nan, np.nan, np.nan, np.nan, frequency, damping_ratio)
+    return replace(nothing, quality="unresolved", note=note)
 
 
 def grade(

@@ -79,9 +79,8 @@ def graded_supports(
             estimate = unresolved(method, reason, frequency, damping_ratio)
             estimates.append(replace(estimate, k_bound=bound).at(direction))
             continue
-        estimate = Estimate(
-            method, k, k * chance, frequency=frequency, damping_ratio=damping_ratio
-        ).at(direction)
+        pole = frequency, damping_ratio
+        estimate = Estimate(method, k, k * chance, np.nan, np.nan, *pole).at(direction)
         if error > WEAK_ABOVE:
             estimate = mark_weak(estimate, f"standard error {error:.0%} of k")
         c_error = float(np.sqrt(total[count + index, count + index]))

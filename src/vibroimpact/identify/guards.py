@@ -5,8 +5,6 @@ flagged estimate takes no part in the recommended values. The column `caution` h
 case, whatever the method.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
@@ -51,9 +49,8 @@ def guarded(
     caution = joined(few_averages(averages), over_stress(record))
     found = []
     for estimate in estimates:
-        if estimate.method in FROM_SPECTRA:
-            if estimate.quality == "unresolved":
-                estimate = replace(estimate, note=joined(unusable, estimate.note))
+        if estimate.method in FROM_SPECTRA and estimate.quality == "unresolved":
+            estimate = replace(estimate, note=joined(unusable, estimate.note))
         if estimate.method in FROM_POLES:
             estimate = flagged(estimate, outside_search(estimate.frequency, search_Hz))
         if estimate.method != "statistical_linearisation":  # it does not see the record

@@ -33,10 +33,7 @@ from .supports_tube import SupportsTube
 # Variables of the two files that identify_case uses.
 RECORD_READ = (*MOMENTS, *ENERGY_RESIDUALS, *GUARDED)
 SPECTRA_READ = (
-    "sensor_spectra_re",
-    "sensor_spectra_im",
-    "line_spectra_re",
-    "line_spectra_im",
+    *("sensor_spectra_re", "sensor_spectra_im", "line_spectra_re", "line_spectra_im"),
     "effective_averages",
 )
 FEWEST_SHAPE_BINS = 3
@@ -130,12 +127,6 @@ def _broadband(case: ObservedCase, tube: ReferenceTube) -> BroadbandFit | None:
         return None
     values = case.outputs[case.layout.broadband][:, case.layout.broadband_bins]
     segments = values.real**2 + values.imag**2
-    return identify_broadband(
-        segments.mean(axis=0),
-        tube.at_broadband,
-        case.layout.kernel,
-        tube.broadband_map,
-        tube.lowest_stable_damping,
-        case.averages,
-        segments,
-    )
+    psd, kernel = segments.mean(axis=0), case.layout.kernel
+    family = tube.at_broadband, kernel, tube.broadband_map, tube.lowest_stable_damping
+    return identify_broadband(psd, *family, case.averages, segments)

@@ -15,13 +15,7 @@ from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.identify.linear.supported_structure import Observed
 
 from .broadband import NEEDS_FORCE
-from .case_estimates import (
-    LOWEST_CORRELATION,
-    LOWEST_MAC,
-    ONE_SENSOR,
-    with_doubts,
-    without_damping,
-)
+from .case_estimates import LOWEST_CORRELATION, LOWEST_MAC, ONE_SENSOR, with_doubts, without_damping
 from .estimate import Estimate, mark_weak, unresolved
 from .graded_supports import graded_supports
 from .observed_case import ObservedCase, or_none
@@ -163,14 +157,9 @@ def _estimates_by_spectra(case: SupportsCase) -> list[Estimate]:
     fit = case.by_spectra
     if fit is None:
         return _unresolved(case, "broadband", _why(case))
-    estimates = [
-        without_damping(estimate) if at_edge else estimate
-        for estimate, at_edge in zip(
-            graded_supports("broadband", fit.found, case.tube.structure, case.search),
-            fit.values.c_at_edge,
-            strict=True,
-        )
-    ]
+    graded = graded_supports("broadband", fit.found, case.tube.structure, case.search)
+    ends = zip(graded, fit.values.c_at_edge, strict=True)
+    estimates = [without_damping(each) if at_edge else each for each, at_edge in ends]
     if fit.correlation < LOWEST_CORRELATION:
         note = f"smallest correlation of a sensor only {fit.correlation:.2f}"
         estimates = [mark_weak(item, note) for item in estimates]

@@ -78,7 +78,8 @@ def identify_modes(
     start = with_residues(start, frequency, response, weight)
     start = _without_small(start, frequency, response, weight)
     start = with_residues(start, frequency, response, weight)
-    return refine_modes(start, [level], band_Hz).sorted(), chart
+    modes = refine_modes(start, [level], band_Hz)
+    return modes.of(np.argsort(modes.frequency)), chart
 
 
 def _without_small(
@@ -94,13 +95,7 @@ def _without_small(
     power = np.sum(np.abs(parts) ** 2, axis=2)
     total = np.sum(np.abs(response * weight) ** 2, axis=1, keepdims=True)
     large = (np.sqrt(power / total).max(axis=0) > NEGLIGIBLE) | modes.residual
-    return replace(
-        modes,
-        frequency=modes.frequency[large],
-        damping_ratio=modes.damping_ratio[large],
-        shapes=modes.shapes[large],
-        residual=modes.residual[large],
-    )
+    return modes.of(large)
 
 
 def with_residues(
@@ -119,11 +114,8 @@ def with_residues(
     products = np.empty((modes.modes, len(response)))
     for channel, values in enumerate(response):
         matrix, wanted = columns * factors[channel][:, None], values * weight
-        products[:, channel] = np.linalg.lstsq(
-            np.vstack([matrix.real, matrix.imag]),
-            np.concatenate([wanted.real, wanted.imag]),
-            rcond=None,
-        )[0]
+        parts = np.vstack([matrix.real, matrix.imag]), np.concatenate([wanted.real, wanted.imag])
+        products[:, channel] = np.linalg.lstsq(*parts, rcond=None)[0]
     driven = np.sqrt(np.maximum(products[:, modes.drive], 0.0))
     driven = np.maximum(driven, SMALL_SHAPE * max(driven.max(), np.sqrt(np.abs(products).max())))
     shapes = products / driven[:, None]
@@ -135,25 +127,19 @@ def refine_modes(
     modes: IdentifiedModes, levels: Sequence[LevelLines], band_Hz: Sequence[float]
 ) -> IdentifiedModes:
     """Return the modes of least relative error over all records, by Levenberg-Marquardt."""
-    grids, weights, wanted = [], [], []
+    records = []
     for level in levels:  # force and response, each (channel, line), over the size of the channel
         inside, scale = level.excited(band_Hz), channel_scale(level, band_Hz)
-        grids.append(level.frequency[inside])
-        weights.append(level.force[inside] / scale)
-        wanted.append(level.response[:, inside] / scale)
+        sizes = level.force[inside] / scale, level.response[:, inside] / scale
+        records.append((level.frequency[inside], *sizes))
     ridge = Ridge(modes)
 
     def evaluate(values):
         trial = unpack(values, modes)
         error = np.concatenate(
-            [
-                (trial.frf(grid) * weight - aim).ravel()
-                for grid, weight, aim in zip(grids, weights, wanted, strict=True)
-            ]
+            [(trial.frf(grid) * weight - wanted).ravel() for grid, weight, wanted in records]
         )
-        slope = np.concatenate(
-            [_derivatives(trial, grid, weight) for grid, weight in zip(grids, weights, strict=True)]
-        )
+        slope = np.concatenate([_derivatives(trial, grid, weight) for grid, weight, _ in records])
         return np.concatenate([error.real, error.imag, ridge.error(values)]), np.vstack(
             [slope.real, slope.imag, np.diag(ridge.weight)]
         )
@@ -185,13 +171,8 @@ class Ridge:
 
 def pack(modes: IdentifiedModes) -> np.ndarray:
     """Return (value,): logarithms of frequencies and damping ratios, then the shapes."""
-    return np.concatenate(
-        [
-            np.log(modes.frequency),
-            np.log(np.maximum(modes.damping_ratio, 1.0e-6)),
-            modes.shapes.ravel(),
-        ]
-    )
+    ratios = np.maximum(modes.damping_ratio, 1.0e-6)
+    return np.concatenate([np.log(modes.frequency), np.log(ratios), modes.shapes.ravel()])
 
 
 def unpack(values: np.ndarray, modes: IdentifiedModes) -> IdentifiedModes:
@@ -208,9 +189,8 @@ def unpack(values: np.ndarray, modes: IdentifiedModes) -> IdentifiedModes:
 
 def channel_scale(level: LevelLines, band_Hz: Sequence[float]) -> np.ndarray:
     """Return (channel, 1) root of the summed squares of the response over the excited lines."""
-    return np.sqrt(
-        np.sum(np.abs(level.response[:, level.excited(band_Hz)]) ** 2, axis=1, keepdims=True)
-    )
+    response = level.response[:, level.excited(band_Hz)]
+    return np.sqrt(np.sum(np.abs(response) ** 2, axis=1, keepdims=True))
 
 
 def _derivatives(modes: IdentifiedModes, frequency: np.ndarray, weight: np.ndarray) -> np.ndarray:

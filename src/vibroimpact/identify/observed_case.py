@@ -65,35 +65,20 @@ class ObservedCase:
 
         other_modes: as in fit_peak.
         """
+        spectrum = self.layout.frequency, self.psd, self.layout.kernel
+        more = self.peak, other_modes, self.averages, self.segments
         return {
-            method: or_none(
-                fit_peak,
-                self.layout.frequency,
-                self.psd,
-                self.layout.kernel,
-                level,
-                self.peak,
-                other_modes,
-                self.averages,
-                self.segments,
-            )
-            for method, level in LEVELS.items()
+            method: or_none(fit_peak, *spectrum, level, *more) for method, level in LEVELS.items()
         }
 
     def operational_pole(self, tube_spectra: Callable) -> OperationalPole | None:
         """Return the OperationalPole of the main peak, or None; tube_spectra as there."""
         layout, lscf = self.layout, self.lscf
         band = tuple(lscf.band_Hz)
-        return or_none(
-            operational_pole,
-            self.outputs,
-            layout.references,
-            PoleSearch(layout.frequency, band, layout.window, lscf.max_order),
-            self.peak,
-            self.averages,
-            effective_duration(self.averages, layout.kernel),
-            tube_spectra,
-        )
+        search = PoleSearch(layout.frequency, band, layout.window, lscf.max_order)
+        spectra = self.outputs, layout.references, search, self.peak
+        duration_s = effective_duration(self.averages, layout.kernel)
+        return or_none(operational_pole, *spectra, self.averages, duration_s, tube_spectra)
 
     def main_shape(self, fit: PeakFit | None, fewest_bins: int) -> DeflectionShape | None:
         """Return the shape of the band above 1/25 of the main peak.

@@ -125,9 +125,8 @@ def match_shape(
     """
     low, high = measured.band_Hz
     inside = (response.frequency >= low) & (response.frequency <= high)
-    response = response.of(
-        slice(int(np.argmax(inside)), int(inside.size - np.argmax(inside[::-1])))
-    )
+    first, after = int(np.argmax(inside)), int(inside.size - np.argmax(inside[::-1]))
+    response = response.of(slice(first, after))
     k_grid, shapes = mode_shapes
     macs = mac(measured.shape, shapes)
     limits = np.log(k_grid[[0, -1]])

@@ -29,20 +29,11 @@ SEARCH_WIDTHS = 2.0
 LEAST_SEARCH_RADIUS = 0.06
 
 
-@dataclass(frozen=True)
-class LagWindow:
-    """The weights of correlations before they are transformed back to spectra.
-
-    weights: (lag,).
-    decay: 1/s, that the exponential window adds to the decay of every mode; to be subtracted.
-    """
-
-    weights: np.ndarray
-    decay: float
-
-
-def lag_window(window: str, samples: int, segment_s: float, longest_lag_s: float) -> LagWindow:
-    """Return the LagWindow: an exponential over the autocorrelation of the analysis window.
+def lag_window(
+    window: str, samples: int, segment_s: float, longest_lag_s: float
+) -> tuple[np.ndarray, float]:
+    """Return (weights (lag,) of correlations before they are transformed back to spectra, decay in
+    1/s that they add to every mode): an exponential over the autocorrelation of the window.
 
     Division by the autocorrelation removes the window's widening of the peaks exactly. The
     exponential suppresses the noise of late lags, and its decay is known.
@@ -56,10 +47,10 @@ def lag_window(window: str, samples: int, segment_s: float, longest_lag_s: float
     exponential = np.exp(-decay * np.arange(lags) * (segment_s / samples))
     weights = exponential / window_autocorrelation(window, samples, lags)
     weights[0] *= 0.5  # lag 0 belongs half to each side
-    return LagWindow(weights, float(decay))
+    return weights, float(decay)
 
 
-def half_spectra(cross_spectra: np.ndarray, lags: LagWindow, band: slice) -> np.ndarray:
+def half_spectra(cross_spectra: np.ndarray, weights: np.ndarray, band: slice) -> np.ndarray:
     """Return the half spectra (..., bin) of averaged one-sided cross-spectra (..., frequency).
 
     A mode with pole p appears once, as A / (i omega + decay - p), with a positive decay. Source:
@@ -67,12 +58,12 @@ def half_spectra(cross_spectra: np.ndarray, lags: LagWindow, band: slice) -> np.
     spectra).
 
     cross_spectra: unit²/Hz, frequencies contiguous from 0.
-    lags: LagWindow made for 2 (frequency - 1) samples.
+    weights: of lag_window for 2 (frequency - 1) samples.
     band: slice of the bins wanted.
     """
     samples = 2 * (cross_spectra.shape[-1] - 1)
-    correlation = np.fft.irfft(cross_spectra, samples, axis=-1)[..., : lags.weights.size]
-    return np.fft.rfft(correlation * lags.weights, samples, axis=-1)[..., band]
+    correlation = np.fft.irfft(cross_spectra, samples, axis=-1)[..., : weights.size]
+    return np.fft.rfft(correlation * weights, samples, axis=-1)[..., band]
 
 
 @dataclass(frozen=True)
@@ -141,20 +132,20 @@ def operational_pole(
     segments = outputs.shape[1]
     longest_lag_s = max(LAG_TIMES_WIDTH / peak[1], SHORTEST_LAG_S)
     samples, segment_s = 2 * (search.frequency.size - 1), 1.0 / search.frequency[1]
-    lags = lag_window(search.window, samples, segment_s, longest_lag_s)
+    weights, decay = lag_window(search.window, samples, segment_s, longest_lag_s)
     pairs = np.einsum("osf,rsf->sorf", outputs, outputs[list(references)].conj())
-    halves = half_spectra(pairs, lags, search.band)
+    halves = half_spectra(pairs, weights, search.band)
     band_frequency = search.frequency[search.band]
     mean = halves.mean(axis=0)
     equations = NormalEquations(band_frequency, mean, search.max_order)
     orders = [order for order in range(2, search.max_order + 1) if order <= 8 or order % 2 == 0]
-    chart = stabilisation_chart(equations, lags.decay, orders)
+    chart = stabilisation_chart(equations, decay, orders)
     start = 2.0 * np.pi * complex(-0.5 * peak[1], peak[0])
     radius_Hz = max(SEARCH_WIDTHS * peak[1], LEAST_SEARCH_RADIUS * peak[0])
     order, stable = first_stable_order(chart, start, radius_Hz)
 
     def pole_in(values):
-        poles = NormalEquations(band_frequency, values, order).poles(order)[0] + lags.decay
+        poles = NormalEquations(band_frequency, values, order).poles(order)[0] + decay
         chosen = nearest_pole(poles, start, radius_Hz)
         return None if chosen is None else poles[chosen]
 
@@ -164,7 +155,7 @@ def operational_pole(
     bias: complex = 0.0
     if tube_spectra is not None:
         bias = _estimator_bias(
-            found, tube_spectra, lambda cross: pole_in(half_spectra(cross, lags, search.band))
+            found, tube_spectra, lambda cross: pole_in(half_spectra(cross, weights, search.band))
         )
     frequency, ratio = frequency_of(found - bias)
     covariance = cramer_rao_covariance(frequency, ratio, duration_s)

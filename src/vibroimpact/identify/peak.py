@@ -180,6 +180,7 @@ def _score(
     sum of weight (estimate/curve - 1) slope = 0. Bins and weights follow the curve, not the noise.
     An amplitude of NaN is set from the first curve.
     """
+    low, high = np.log((SMALLEST_RATIO, LARGEST_RATIO))
     for step in range(SCORING_STEPS):
         bins = _bins(frequency, theta)
         shape, slopes, weights = _curve(frequency[bins], theta, kernel, level, factor)
@@ -198,19 +199,11 @@ def _score(
             return _Score(theta, bins, curve, slopes, weights)
         # The weights follow the curve. If this makes the steps oscillate, half steps converge.
         theta = theta + change * min(1.0 if step < FULL_STEPS else 0.5, 0.5 / largest)
-        if not _plausible(theta, frequency):
+        if not np.all(np.isfinite(theta)):
             return None
+        if not frequency[0] < np.exp(theta[1]) < frequency[-1] or not low < theta[2] < high:
+            return None  # the pole lies outside the spectrum, or is no damped resonance
     return _Score(theta, bins, curve, slopes, weights) if largest < ROUGHLY else None
-
-
-def _plausible(theta: np.ndarray, frequency: np.ndarray) -> bool:
-    """Return True when the pole of theta lies inside the spectrum and is a damped resonance."""
-    ratios = np.log((SMALLEST_RATIO, LARGEST_RATIO))
-    return bool(
-        np.all(np.isfinite(theta))
-        and frequency[0] < np.exp(theta[1]) < frequency[-1]
-        and ratios[0] < theta[2] < ratios[1]
-    )
 
 
 def _bins(frequency: np.ndarray, theta: np.ndarray) -> slice:

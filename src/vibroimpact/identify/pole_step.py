@@ -18,9 +18,7 @@ SETTLED = 1.0e-8
 
 
 def step_to_pole(
-    structure: SupportedStructure,
-    found: FoundSupports,
-    pole: tuple[float, float, np.ndarray],
+    structure: SupportedStructure, found: FoundSupports, pole: tuple[float, float, np.ndarray]
 ) -> FoundSupports | None:
     """Return the nearest supports that give the main mode a pole, or None if there are none.
 

@@ -51,19 +51,13 @@ class ReferenceTube:
     @cached_property
     def broadband_map(self) -> FamilyMap:
         """Return the FamilyMap of the broadband sensor."""
+
+        def damping(k: float, factor: float) -> float:
+            wanted = self.damping_for(k, factor * self.first_damping_ratio(k))
+            return max(wanted, self.lowest_stable_damping(k))
+
         k = np.geomspace(*self.layout.stiffness_range, MAP_STIFFNESSES)
-        c = np.array(
-            [
-                [
-                    max(
-                        self.damping_for(each, factor * self.first_damping_ratio(each)),
-                        self.lowest_stable_damping(each),
-                    )
-                    for factor in MAP_DAMPING
-                ]
-                for each in k
-            ]
-        )
+        c = np.array([[damping(each, factor) for factor in MAP_DAMPING] for each in k])
         return family_map(self.at_broadband, self.layout.kernel, k, c)
 
     @cached_property

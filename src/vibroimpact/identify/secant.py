@@ -18,14 +18,8 @@ from .estimate import Estimate
 
 # Moments of a record that secant_support reads.
 MOMENTS = (
-    "force_displacement",
-    "displacement_square",
-    "displacement_product",
-    "velocity_square",
-    "velocity_product",
-    "displacement_mean",
-    "force_mean",
-    "contact_power",
+    *("force_displacement", "displacement_square", "displacement_product", "velocity_square"),
+    *("velocity_product", "displacement_mean", "force_mean", "contact_power"),
 )
 SMALL_OFFSET = 1.0e-3  # of the gap: an imperfection, not an asymmetry
 

@@ -56,17 +56,14 @@ def stabilisation_chart(
 
     decay: 1/s of the exponential window, subtracted.
     """
-    columns: list[list[np.ndarray]] = [[], [], [], [], []]
-    before = None
+    rows, before = [], None
     for order in orders:
         poles, participation = equations.poles(order)
         poles = poles + decay
         flags = _stable_flags(poles, participation, before)
-        parts = (np.full(poles.size, order), poles, *flags)
-        for column, values in zip(columns, parts, strict=True):
-            column.append(values)
+        rows.append((np.full(poles.size, order), poles, *flags))
         before = (poles, participation)
-    return StabilisationChart(*(np.concatenate(column) for column in columns))
+    return StabilisationChart(*map(np.concatenate, zip(*rows, strict=True)))
 
 
 def _stable_flags(

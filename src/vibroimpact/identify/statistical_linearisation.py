@@ -81,24 +81,16 @@ def statistical_linearisation(
         if change < TOLERANCE:
             settled = True
             break
-        if change > change_before:
-            relaxation = max(0.05, 0.6 * relaxation)
-        else:
-            relaxation = min(1.0, 1.1 * relaxation)
+        slower, faster = max(0.05, 0.6 * relaxation), min(1.0, 1.1 * relaxation)
+        relaxation = slower if change > change_before else faster
         change_before = change
         stiffness = stiffness + relaxation * (wanted - stiffness)
     work, square = (np.zeros(2 * model.contact_shapes.shape[1]) for _ in range(2))
     work[rows] = stiffness * variance
     square[rows] = model.contact_weight[point] * variance
     total = np.sum(work[rows]) / np.sum(square[rows])
-    return Linearisation(
-        float(total),
-        work.reshape(-1, 2),
-        square.reshape(-1, 2),
-        float(omega[0] / (2.0 * np.pi)),
-        float(decay[0] / omega[0]),
-        settled,
-    )
+    pole = float(omega[0] / (2.0 * np.pi)), float(decay[0] / omega[0])
+    return Linearisation(float(total), work.reshape(-1, 2), square.reshape(-1, 2), *pole, settled)
 
 
 def power_in_band(

@@ -10,8 +10,6 @@ A block counts by the inverse of its variance, which holds the error of the sens
 of the motion that is not one shape, and the error of the model's frequencies.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -51,7 +49,7 @@ class BlockShapes:
     deviation: np.ndarray
     weights: np.ndarray
 
-    def of(self, blocks: np.ndarray) -> BlockShapes:
+    def of(self, blocks: np.ndarray) -> "BlockShapes":
         """Return some of the blocks: (block,) bool."""
         return BlockShapes(self.shapes[blocks], self.deviation[blocks], self.weights[blocks])
 

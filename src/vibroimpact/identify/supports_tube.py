@@ -26,10 +26,7 @@ class SupportsTube:
     """
 
     def __init__(
-        self,
-        model: ModalModel,
-        groups: str | tuple[tuple[str, ...], ...],
-        layout: SpectraLayout,
+        self, model: ModalModel, groups: str | tuple[tuple[str, ...], ...], layout: SpectraLayout
     ) -> None:
         """Prepare the compliances.
 
@@ -58,9 +55,8 @@ class SupportsTube:
         """Return outputs on the fine grid of some bins (frequency,) in Hz, and on the bins."""
         kernel = self.layout.kernel
         fine = kernel.fine_index(frequency)
-        return self.structure.observed(shapes, fine), self.structure.observed(
-            shapes, fine[kernel.bins]
-        )
+        at_bins = self.structure.observed(shapes, fine[kernel.bins])
+        return self.structure.observed(shapes, fine), at_bins
 
     @cached_property
     def at_sensors(self) -> Observed:

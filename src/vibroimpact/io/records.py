@@ -257,8 +257,6 @@ def read_given_dataset(path: str | Path, described: Iterable[str] = ()) -> xr.Da
     if not place.is_file():
         raise RecordError(f"{path}: is no file: give the path of a netCDF file")
     with _foreign(path, "netCDF"):
-        if is_hdf5(path):
-            inspect_hdf5(path)
         with xr.open_dataset(
             path, engine="netcdf4", decode_times=False, decode_timedelta=False
         ) as dataset:
@@ -300,8 +298,6 @@ def read_numeric_variables(
     than it can hold.
     """
     with _foreign(path, "netCDF"):
-        if is_hdf5(path):
-            inspect_hdf5(path)
         with netCDF4.Dataset(path) as file:
             numeric = {
                 name: variable
@@ -349,7 +345,6 @@ def read_hdf5_arrays(path: str | Path) -> dict[str, np.ndarray]:
         found[label] = item
 
     with _foreign(path, "HDF5"):
-        inspect_hdf5(path)
         with h5py.File(path, "r") as file:
             file.visititems(collect)
             _refuse_size(path, found, MOST_PACKED)
@@ -358,10 +353,14 @@ def read_hdf5_arrays(path: str | Path) -> dict[str, np.ndarray]:
 
 @contextmanager
 def _foreign(path: str | Path, kind: str) -> Iterator[None]:
-    """Turn whatever a library raises on a damaged file into a RecordError."""
+    """Turn whatever a library raises on a damaged file into a RecordError, and refuse damage that
+    it does not see.
+    """
     try:
         # netCDF4 warns if it leaves out an attribute that would change the values.
         with warnings.catch_warnings(action="error", category=UserWarning):
+            if is_hdf5(path):
+                inspect_hdf5(path)
             yield
     except RecordError:
         raise
@@ -422,10 +421,7 @@ def write_cells(columns: Iterable[str], rows: Iterable, path: str | Path) -> Non
 
     Raises RecordError if the folder cannot be written or is full.
     """
-    with (
-        whole_file(path) as temporary,
-        open(temporary, "w", newline="", encoding="utf-8") as file,
-    ):
+    with whole_file(path) as temporary, open(temporary, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(columns)
         writer.writerows([_cell(value) for value in row] for row in rows)

@@ -28,12 +28,8 @@ SI_OF_KIND = {kind: unit for kind, (unit, _) in UNITS_OF_KIND.items()}
 ANY = ("", "m s-2, mm, N or V; 1 for a number without a unit")
 # Texts that nearly every file holds. They save the import of pint, half a second per job.
 COMMON = {
-    "m s-2": ("acceleration", 1.0),
-    "m/s2": ("acceleration", 1.0),
-    "m/s^2": ("acceleration", 1.0),
-    "m/s²": ("acceleration", 1.0),
-    "m s-1": ("velocity", 1.0),
-    "m/s": ("velocity", 1.0),
+    **dict.fromkeys(("m s-2", "m/s2", "m/s^2", "m/s²"), ("acceleration", 1.0)),
+    **dict.fromkeys(("m s-1", "m/s"), ("velocity", 1.0)),
     "m": ("displacement", 1.0),
     "mm": ("displacement", 1e-3),
     "N": ("force", 1.0),
@@ -42,18 +38,12 @@ COMMON = {
 SAME_DIMENSION = {"contact_force": "force", "base_acceleration": "acceleration"}
 # Names of UDUNITS that pint lacks; its mil is an angle.
 ALIASES = {
-    "gn": "standard_gravity",
-    "g0": "standard_gravity",
-    "g_0": "standard_gravity",
-    "standard_free_fall": "standard_gravity",
-    "mil": "thou",
-    "mils": "thou",
+    **dict.fromkeys(("gn", "g0", "g_0", "standard_free_fall"), "standard_gravity"),
+    **dict.fromkeys(("mil", "mils"), "thou"),
     "ips": "inch/second",
     "KN": "kN",
     "strain": "m/m",
-    "microstrain": "um/m",
-    "µstrain": "um/m",
-    "ustrain": "um/m",
+    **dict.fromkeys(("microstrain", "µstrain", "ustrain"), "um/m"),
 }
 WORD = re.compile(r"[A-Za-z]{3,}")  # a name; shorter ones are symbols, in which m is not M
 SHARE_OF_G = re.compile(r"(milli|m|µ|u)?[gG](?:'?s)?")

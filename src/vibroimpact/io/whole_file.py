@@ -58,17 +58,10 @@ def whole_file(path: str | Path) -> Iterator[Path]:
             raise
         raise RecordError(f"{path}: cannot be written: {reason}") from error
     finally:
-        _remove(temporary)
-
-
-def _remove(temporary: Path) -> None:
-    """Remove a temporary file, if it is there, and free its space at once.
-
-    A library that failed to write it may keep it open; a full disk would then stay full.
-    """
-    with suppress(OSError):
-        os.truncate(temporary, 0)
-        temporary.unlink()
+        with suppress(OSError):
+            # A library that failed to write it may keep it open: its space is freed at once.
+            os.truncate(temporary, 0)
+            temporary.unlink()
 
 
 def _reason(folder: Path, error: Exception) -> str | None:

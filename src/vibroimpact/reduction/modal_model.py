@@ -253,21 +253,15 @@ class ModalModel:
             yield "omega must be ascending and not negative"
         if (self.damping < 0.0).any():
             yield "damping must not be negative"
-        if len(self.fluid_laws.velocity) != self.fluid_shapes.shape[1]:
-            yield (
-                f"fluid_laws are for {len(self.fluid_laws.velocity)} rows, fluid_shapes has"
-                f" {self.fluid_shapes.shape[1]}"
-            )
-        points = len(self.support_of_point)
-        if len(self.contact_laws.gap) != points:
-            yield (
-                f"contact_laws are for {len(self.contact_laws.gap)} points, the model has {points}"
-            )
-        if len(self.local_laws.stiffness) != len(self.element_names):
-            yield (
-                f"local_laws are for {len(self.local_laws.stiffness)} elements, the model has"
-                f" {len(self.element_names)}"
-            )
+        points, elements = len(self.support_of_point), len(self.element_names)
+        rows = self.fluid_shapes.shape[1]
+        for name, column, what, count in (
+            ("fluid_laws", self.fluid_laws.velocity, "rows, fluid_shapes", rows),
+            ("contact_laws", self.contact_laws.gap, "points, the model", points),
+            ("local_laws", self.local_laws.stiffness, "elements, the model", elements),
+        ):
+            if len(column) != count:
+                yield f"{name} are for {len(column)} {what} has {count}"
         if not points:
             return
         count, support = len(self.support_names), self.support_of_point

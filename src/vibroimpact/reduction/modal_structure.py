@@ -79,15 +79,14 @@ class IdentifiedModes:
         displacement = (self.shapes * participation[:, None]).T @ self.receptance(frequency)
         return self.sensor_factors(frequency) * displacement
 
-    def sorted(self) -> "IdentifiedModes":
-        """Return the modes in ascending frequency."""
-        order = np.argsort(self.frequency)
+    def of(self, chosen: np.ndarray) -> "IdentifiedModes":
+        """Return some of the modes: their numbers in a new order, or (mode,) bool."""
         return replace(
             self,
-            frequency=self.frequency[order],
-            damping_ratio=self.damping_ratio[order],
-            shapes=self.shapes[order],
-            residual=self.residual[order],
+            frequency=self.frequency[chosen],
+            damping_ratio=self.damping_ratio[chosen],
+            shapes=self.shapes[chosen],
+            residual=self.residual[chosen],
         )
 
 
@@ -106,17 +105,17 @@ def modal_model(
     constant_force: N at the drive point.
     """
     order = np.argsort(modes.frequency)
-    participation, shapes = participation[order], modes.shapes[order]
+    modes, participation, shapes = modes.of(order), participation[order], modes.shapes[order]
     channels, elements = shapes.shape[1], participation.shape[1]
     return ModalModel(
-        omega=modes.omega[order],
-        damping=modes.damping[order],
+        omega=modes.omega,
+        damping=modes.damping,
         drive_shapes=shapes[:, [modes.drive]],
         sensor_shapes=shapes,
         sensor_names=tuple(modes.names),
         sensor_positions=np.zeros((channels, 3)),
         sensor_directions=np.tile([0.0, 0.0, 1.0], (channels, 1)),
-        full_mode_frequencies=modes.frequency[order],
+        full_mode_frequencies=modes.frequency,
         element_shapes=participation,
         element_names=tuple(f"element_{number + 1}" for number in range(elements)),
         local_laws=laws or LocalLaws.neutral(elements),

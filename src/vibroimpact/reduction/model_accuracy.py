@@ -19,14 +19,8 @@ from vibroimpact.structure.contact.local_elements import element_laws
 from .reduced_model import full_structure, keeps_all_modes, reduced_basis, spring_rows
 
 COLUMNS = (
-    "condition",
-    "mode",
-    "full_Hz",
-    "reduced_Hz",
-    "basis_error",
-    "halved_mesh_Hz",
-    "mesh_error",
-    "flag",
+    *("condition", "mode", "full_Hz", "reduced_Hz", "basis_error"),
+    *("halved_mesh_Hz", "mesh_error", "flag"),
 )
 CONDITIONS = ("free", "on supports")
 # Relative error of a frequency. The methods of identification take a model's frequencies as right

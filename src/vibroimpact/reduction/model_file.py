@@ -125,14 +125,8 @@ def write_model(
 
 def _attributes(name: str) -> dict[str, str]:
     """Return {units, long_name, comment} of a variable of a model file, those that it has."""
-    if name not in MODEL_VARIABLES:
-        return {}
-    units, long_name, comment = MODEL_VARIABLES[name]
-    return {
-        **({"units": units} if units else {}),
-        "long_name": long_name,
-        **({"comment": comment} if comment else {}),
-    }
+    texts = zip(("units", "long_name", "comment"), MODEL_VARIABLES.get(name, ()), strict=False)
+    return {key: text for key, text in texts if text}
 
 
 def _array_variable(name, values):

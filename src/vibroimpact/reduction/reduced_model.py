@@ -10,11 +10,7 @@ from scipy import linalg, sparse
 from vibroimpact.config.name_checks import TUBES
 from vibroimpact.config.stage_settings import ConfigPart
 from vibroimpact.excitation.fluid_rows import fluid_fields
-from vibroimpact.excitation.force_vectors import (
-    constant_force_vector,
-    force_vector,
-    turn_axis,
-)
+from vibroimpact.excitation.force_vectors import constant_force_vector, force_vector, turn_axis
 from vibroimpact.excitation.turbulence import drive_shapes
 from vibroimpact.geometry.centreline import SAME_PLACE_M
 from vibroimpact.io.memo import Memo, content_key
@@ -128,12 +124,8 @@ def full_structure(
         structure = build_point_structure(config)
     point_rows = point_rows_of(structure, config)
     dampers = getattr(structure, "dampers", [])
-    local_rows = np.vstack(
-        [
-            element_rows(config.elements, point_rows, structure.dofs),
-            *(row[None] for row, _ in dampers),
-        ]
-    )
+    own_rows = element_rows(config.elements, point_rows, structure.dofs)
+    local_rows = np.vstack([own_rows, *(row for row, _ in dampers)])
     return with_point_masses(structure, config.masses, point_rows), local_rows
 
 
@@ -234,11 +226,7 @@ def _contact_fields(structure: Any, shapes: np.ndarray, config: ConfigPart) -> d
 
 
 def _force_fields(
-    structure: Any,
-    omega: np.ndarray,
-    shapes: np.ndarray,
-    config: ConfigPart,
-    point_rows: Callable,
+    structure: Any, omega: np.ndarray, shapes: np.ndarray, config: ConfigPart, point_rows: Callable
 ) -> dict[str, Any]:
     """Return the fields of the case's force and of the constant force."""
     if config.excitation.kind == "turbulence":
@@ -330,7 +318,15 @@ def _modes_on(
     if isinstance(structure, PointStructure):
         require_definite(((each.dofs, each.mass, each.stiffness) for each in groups), names)
     if not keeps_all_modes(structure):
-        omega, shapes = modal_basis(structure, groups, basis)
+        # Frequencies above free_modes_to_Hz are those of residual vectors, not of modes: they carry
+        # the local flexibility at the contacts.
+        parts = []
+        for group in groups:
+            omega, inside = orthonormal_basis(group, basis_vectors(group, basis))
+            shapes = np.zeros((structure.dofs, len(omega)))  # exactly 0 outside the group
+            shapes[group.dofs] = inside
+            parts.append((omega, shapes))
+        omega, shapes = _ascending(parts)
         free = [group.free_modes(basis.free_modes_to_Hz)[0] for group in groups]
         return omega, shapes, np.sort(np.concatenate(free)) / (2.0 * np.pi)
     omega, shapes = np.zeros(structure.dofs), np.zeros((structure.dofs, structure.dofs))
@@ -342,25 +338,6 @@ def _modes_on(
         shapes[np.ix_(group.dofs, group.dofs)] = inside
     omega, shapes = _ascending([(omega, shapes)])
     return omega, shapes, omega / (2.0 * np.pi)
-
-
-def modal_basis(
-    structure: Any, groups: Sequence[DofGroup], basis: ConfigPart
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return (omega (mode,) rad/s ascending, shapes (dof, mode)) of the Ritz basis.
-
-    Each uncoupled group is treated separately, and a shape is exactly 0.0 outside its group.
-    Frequencies above basis.free_modes_to_Hz belong to motion that constrained modes and attachment
-    shapes add to the free modes. These are residual vectors, not modes of the tube, and carry the
-    local flexibility at the contacts.
-    """
-    parts = []
-    for group in groups:
-        omega, inside = orthonormal_basis(group, basis_vectors(group, basis))
-        shapes = np.zeros((structure.dofs, len(omega)))
-        shapes[group.dofs] = inside
-        parts.append((omega, shapes))
-    return _ascending(parts)
 
 
 def _ascending(parts: Sequence[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
@@ -395,18 +372,6 @@ def named_arc_length(structure: TubeStructure, config: ConfigPart, name: str) ->
     return structure.centreline.locate(config.points[name], f"point {name}")
 
 
-def _wanted_sensors(structure: Any, config: ConfigPart) -> list[tuple[str, str]]:
-    """Return the (point, direction) of the sensors: those of record.sensors. Without that section,
-    a structure other than a tube has one for every direction of every named point.
-    """
-    sensors = config.record.sensors
-    if sensors is not None:
-        return [(name, axis) for name in sensors.points for axis in sensors.directions]
-    if config.structure.kind in TUBES:
-        return []
-    return [(name, axis) for name, axes in structure.directions.items() for axis in axes]
-
-
 def _sensor_fields(
     structure: Any,
     shapes: np.ndarray,
@@ -414,8 +379,14 @@ def _sensor_fields(
     point_rows: Callable,
     gauges: Sequence[tuple[str, np.ndarray]],
 ) -> dict[str, Any]:
-    """Return the fields of the sensors, "point.direction", and "point.strain" of the gauges."""
-    wanted = _wanted_sensors(structure, config)
+    """Return the fields of the sensors, "point.direction", and "point.strain" of the gauges.
+
+    Without record.sensors, a structure other than a tube has one for every direction of every
+    named point.
+    """
+    sensors, places = config.record.sensors, getattr(structure, "directions", {})
+    named = places if sensors is None else dict.fromkeys(sensors.points, sensors.directions)
+    wanted = [(name, axis) for name, axes in named.items() for axis in axes]
     positions = [np.array(config.points.get(name, (0.0, 0.0, 0.0))) for name, _ in wanted]
     if config.structure.kind in TUBES:
         place_of = cache(lambda name: named_arc_length(structure, config, name))

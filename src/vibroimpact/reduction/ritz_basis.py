@@ -81,16 +81,13 @@ def group_numbers(
     matrices = (
         part for own in (mass, stiffness) for part in (own.data != 0.0, own.indices, own.indptr)
     )
-    return GROUPS.get(
-        content_key(rows != 0.0, *matrices), lambda: _connected(mass, stiffness, rows)
-    )
 
+    def connected() -> np.ndarray:
+        moved = sparse.csr_array((rows != 0.0).astype(float))
+        pattern = (mass != 0).astype(float) + (stiffness != 0).astype(float) + moved.T @ moved
+        return csgraph.connected_components(pattern, directed=False)[1]
 
-def _connected(mass, stiffness, rows):
-    """Return the numbers of group_numbers."""
-    moved = sparse.csr_array((rows != 0.0).astype(float))
-    pattern = (mass != 0).astype(float) + (stiffness != 0).astype(float) + moved.T @ moved
-    return csgraph.connected_components(pattern, directed=False)[1]
+    return GROUPS.get(content_key(rows != 0.0, *matrices), connected)
 
 
 def uncoupled_groups(

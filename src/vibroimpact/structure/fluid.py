@@ -164,14 +164,9 @@ def _viscous_coefficient(fluid: ConfigPart, section: ConfigPart) -> float:
     """
     if not fluid.viscosity_Pa_s or not fluid.density_kg_per_m3:
         return 0.0
-    kinematic = fluid.viscosity_Pa_s / fluid.density_kg_per_m3
-    ratio = viscous_damping_ratio(
-        1.0,
-        outer_width(section),
-        1.0,
-        (fluid.density_kg_per_m3, kinematic),
-        equivalent_diameter_ratio(fluid.confinement, section),
-    )
+    own = fluid.density_kg_per_m3, fluid.viscosity_Pa_s / fluid.density_kg_per_m3
+    confinement = equivalent_diameter_ratio(fluid.confinement, section)
+    ratio = viscous_damping_ratio(1.0, outer_width(section), 1.0, own, confinement)
     return float(4.0 * np.pi * ratio)
 
 
@@ -185,16 +180,8 @@ def mean_fluid_mass(structure: ConfigPart, line: Centreline) -> float:
     )
 
 
-def beams_in_fluid(beam: Beam, stretches: Sequence[FluidStretch], places: np.ndarray) -> list[Beam]:
-    """Return the Beam of each element, its masses grown by the fluids at its middle.
-
-    places: (element,) arc lengths in m.
-    """
-    return [_beam_at(beam, stretches, place) if stretches else beam for place in places]
-
-
-def _beam_at(beam: Beam, stretches: Sequence[FluidStretch], place: float) -> Beam:
-    """Return the Beam with the fluids at an arc length in m."""
+def beam_in_fluid(beam: Beam, stretches: Sequence[FluidStretch], place: float) -> Beam:
+    """Return the Beam with its masses grown by the fluids at an arc length in m."""
     here = [each for each in stretches if each.begin <= place <= each.end]
     inside = sum(each.inside for each in here)
 

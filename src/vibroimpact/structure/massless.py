@@ -14,8 +14,6 @@ nor stiffness is held at zero. R. J. Guyan, Reduction of stiffness and mass matr
 (Wiley 2006), section 17.3.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -98,13 +96,9 @@ def condense_massless(
     beside = np.eye(static.shape[1])
     scale = float(stiffness.diagonal().max() / mass.diagonal().max())
     highest = float(square[0]) if square[0] > EPSILON * scale else scale
-    return Condensed(
-        np.hstack([follow, static]),
-        np.hstack([kept, np.zeros_like(static)]),
-        null,
-        _symmetric(own_mass, beside / highest),
-        _symmetric(own_stiffness, beside),
-    )
+    recovery, kept = np.hstack([follow, static]), np.hstack([kept, np.zeros_like(static)])
+    matrices = _symmetric(own_mass, beside / highest), _symmetric(own_stiffness, beside)
+    return Condensed(recovery, kept, null, *matrices)
 
 
 def _symmetric(first: np.ndarray, second: np.ndarray) -> sparse.csr_array:

@@ -4,8 +4,6 @@ Read here, since the reader of SciPy 1.17 takes missing values for 0 and crashes
 files.
 """
 
-from __future__ import annotations
-
 from itertools import chain
 from pathlib import Path
 from typing import TextIO

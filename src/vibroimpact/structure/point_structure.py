@@ -74,13 +74,10 @@ class PointStructure:
         It is relative if a contact point has two ends.
         """
         rows = [
-            self.point_rows(one) - (self.point_rows(other) if other else 0.0)
-            for one, other in self.contact_points
+            axes @ (self.point_rows(one) - (self.point_rows(other) if other else 0.0))
+            for axes, (one, other) in zip(self.contact.directions, self.contact_points, strict=True)
         ]
-        along = [
-            directions @ row for directions, row in zip(self.contact.directions, rows, strict=True)
-        ]
-        return np.array(along).reshape(-1, 2, self.dofs)
+        return np.array(rows).reshape(-1, 2, self.dofs)
 
     @property
     def inertia(self) -> np.ndarray:

@@ -8,11 +8,7 @@ import numpy as np
 from scipy import sparse
 
 from vibroimpact.config.stage_settings import ConfigPart
-from vibroimpact.geometry.centreline import (
-    SAME_PLACE_M,
-    Centreline,
-    build_centreline,
-)
+from vibroimpact.geometry.centreline import SAME_PLACE_M, Centreline, build_centreline
 from vibroimpact.geometry.directions import transverse_directions, unit_vector
 from vibroimpact.geometry.mesh import halved_mesh, mesh_arc_lengths
 from vibroimpact.geometry.sections import ROUND, section_kind
@@ -20,7 +16,7 @@ from vibroimpact.io.memo import Memo
 from vibroimpact.structure.contact.supports import ContactPoints, place_contact_points
 
 from .beam_elements import DOF_PER_NODE, Beam, element_matrices, interpolation, section_beam
-from .fluid import FluidStretch, beams_in_fluid, fluid_stretches, transverse_only
+from .fluid import FluidStretch, beam_in_fluid, fluid_stretches, transverse_only
 
 STRUCTURES, UNHELD = Memo(), Memo()
 ENDS = ("root", "start", "end")
@@ -98,9 +94,7 @@ class TubeStructure:
         the discretisation error.
         """
         tangent = self.centreline.direction(arc_length)
-        axes = np.array(
-            [np.cross(tangent, direction) for direction in self.section_axes(arc_length)]
-        )
+        axes = np.cross(tangent, self.section_axes(arc_length))
         fibres = np.array([plane.fibre_stiffness for plane in self.beam.planes])
         elements = self._elements_touching(arc_length)
         rows = np.zeros((2, self.dofs))
@@ -249,7 +243,7 @@ def _unheld(
     beam = section_beam(structure.section, structure.material, structure.theory)
     first_axis = _first_axis(structure.section, line)
     lengths, axes = _element_frames(line, nodes, middles, first_axis)
-    beams = beams_in_fluid(beam, stretches, middles)
+    beams = [beam_in_fluid(beam, stretches, place) for place in middles]
     elements = [element_matrices(*each) for each in zip(beams, lengths, axes, strict=True)]
     stiffness, mass = (_assembled(matrices) for matrices in zip(*elements, strict=True))
     fluid = _fluid_matrices(beam, stretches, middles, (lengths, axes))
@@ -313,14 +307,10 @@ def _fluid_matrices(
 
 def _assembled(matrices: Sequence[np.ndarray]) -> sparse.csr_array:
     """Return the matrix (node dof, node dof) of elements (12, 12) in a row."""
-    size, entries = DOF_PER_NODE * (len(matrices) + 1), 4 * DOF_PER_NODE**2
-    rows, columns = (np.zeros((len(matrices), entries), dtype=int) for _ in range(2))
-    for element in range(len(matrices)):
-        dofs = DOF_PER_NODE * element + np.arange(2 * DOF_PER_NODE)
-        rows[element], columns[element] = np.repeat(dofs, len(dofs)), np.tile(dofs, len(dofs))
-    values = np.array([matrix.ravel() for matrix in matrices])
-    place = (rows.ravel(), columns.ravel())
-    return sparse.coo_array((values.ravel(), place), shape=(size, size)).tocsr()
+    size, own = DOF_PER_NODE * (len(matrices) + 1), np.arange(2 * DOF_PER_NODE)
+    dofs = DOF_PER_NODE * np.arange(len(matrices))[:, None] + own
+    place = np.repeat(dofs, own.size, axis=1).ravel(), np.tile(dofs, own.size).ravel()
+    return sparse.coo_array((np.ravel(matrices), place), shape=(size, size)).tocsr()
 
 
 def _end_conditions(

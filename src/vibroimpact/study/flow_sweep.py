@@ -14,7 +14,7 @@ from typing import Any, cast
 import numpy as np
 import xarray as xr
 
-from vibroimpact.config.changed_keys import changed_config
+from vibroimpact.config.reading import changed_config
 from vibroimpact.config.schema import Config
 from vibroimpact.excitation.fluid_elastic import FluidLaws, fluid_force
 from vibroimpact.excitation.turbulence import load_of_spectrum

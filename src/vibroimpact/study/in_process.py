@@ -9,8 +9,7 @@ from typing import Any
 
 import xarray as xr
 
-from vibroimpact.config.changed_keys import changed_config
-from vibroimpact.config.reading import config_of
+from vibroimpact.config.reading import changed_config, config_of
 from vibroimpact.config.schema import Config
 from vibroimpact.config.stage_keys import stage_params
 from vibroimpact.identify.estimate import table_rows

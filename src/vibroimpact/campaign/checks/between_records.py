@@ -85,11 +85,8 @@ def contradictions(measured: CampaignSignals) -> Found:
     """Yield the records that contradict the others: no response to the force, reversed, in another
     unit, or with two channels swapped. Of several forces the first would have to drive all.
     """
-    found = {}
-    for record in range(len(measured.records)):
-        gains = _gains(measured, record)
-        if gains is not None:
-            found[record] = gains
+    seen = ((record, _gains(measured, record)) for record in range(len(measured.records)))
+    found = {record: gains for record, gains in seen if gains is not None}
     best = {record: float(gains.mean.max()) for record, gains in found.items()}
     most = max(best.values(), default=0.0)
     for record in [each for each in best if best[each] < UNRELATED and most > COHERENT]:

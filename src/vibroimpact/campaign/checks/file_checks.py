@@ -422,14 +422,12 @@ def _content(measured, usable):
     """Yield rows of the least that a verdict needs, after the other checks excluded signals."""
     force, response = usable
     whole = force & response.any(axis=1)
-    lacking = None
-    if not force.any() or measured.force_unit_faults.get(0):
-        lacking = (
-            f"record has a usable force {measured.forces[0]}: a verdict needs one measured force"
-        )
-    elif not whole.any():
+    driven = force.any() and not measured.force_unit_faults.get(0)
+    if not driven or not whole.any():
         lacking = "response is usable together with a usable force: a verdict needs one response"
-    if lacking is not None:
+        if not driven:
+            name = measured.forces[0]
+            lacking = f"record has a usable force {name}: a verdict needs one measured force"
         yield check_row("content", "refuse", f"No {lacking}.")
         return
     loads = measured.load_rms[whole]

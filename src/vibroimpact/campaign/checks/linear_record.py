@@ -62,13 +62,11 @@ def channel_delays(
     unit = spectra.h1 / np.maximum(np.abs(spectra.h1), np.finfo(float).tiny)
     squared = unit**2 * np.where(np.array(kinds) == "velocity", -1.0, 1.0)[:, None]
     finite = finite & (np.array(kinds) != "contact_force")
-    weights = spectra.coherence / np.maximum(
-        spectra.coherence.sum(axis=-1, keepdims=True), np.finfo(float).tiny
-    )
+    total = spectra.coherence.sum(axis=-1, keepdims=True)
+    weights = spectra.coherence / np.maximum(total, np.finfo(float).tiny)
     lags = np.arange(-LONGEST_DELAY_SAMPLES, LONGEST_DELAY_SAMPLES + DELAY_STEP, DELAY_STEP)
-    score = np.real(
-        (weights * squared) @ np.exp(4j * np.pi * np.outer(spectra.frequency, lags / rate))
-    )
+    turns = np.exp(4j * np.pi * np.outer(spectra.frequency, lags / rate))
+    score = np.real((weights * squared) @ turns)
     best = score.max(axis=-1)
     trusted = np.flatnonzero(finite & (best > REAL_ENOUGH) & (mean_coherence(spectra) > INCOHERENT))
     if trusted.size == 0:
@@ -85,9 +83,8 @@ def channel_delays(
         if abs(found[index] - common) > smallest and _explains(score[index, here], best[index])
     }
     together = score[trusted].mean(axis=0)
-    return apart, (
-        common if abs(common) > smallest and _explains(together[zero], together[here]) else None
-    )
+    late = abs(common) > smallest and _explains(together[zero], together[here])
+    return apart, common if late else None
 
 
 def _not_delayed(
@@ -162,11 +159,9 @@ def swap_hints(signals: CampaignSignals, spectra: Transfer) -> list[tuple[int, i
         return hints
     for index in silent:
         alike = [other for other in loud if signals.kinds[other] == signals.kinds[index]]
-        rivals = (
-            [other for other in alike if spectra.power[other] > OUTSHINES * spectra.power[index]]
-            if alike
-            else loud.tolist()
-        )
+        least = OUTSHINES * spectra.power[index]
+        louder = [other for other in alike if spectra.power[other] > least]
+        rivals = louder if alike else loud.tolist()
         beside = [
             other
             for other in rivals

@@ -168,14 +168,10 @@ def _merge_gains(rows: list[dict]) -> list[dict]:
         " Several channels are off: the structure is another than the model at this level, or the"
         " force has another unit."
     )
-    return [
-        (
-            row | {"check": "gains", "message": row["message"].split(": check")[0] + "." + why}
-            if row["check"] == "units"
-            else row
-        )
-        for row in rows
-    ]
+    for row in rows:
+        if row["check"] == "units":
+            row |= {"check": "gains", "message": row["message"].split(": check")[0] + "." + why}
+    return rows
 
 
 def _swaps(misfit: np.ndarray, kinds: list[str]) -> Iterator[tuple[int, int]]:
@@ -196,9 +192,7 @@ def _swaps(misfit: np.ndarray, kinds: list[str]) -> Iterator[tuple[int, int]]:
 def _unit_hint(gain_dB: float) -> str:
     """Return ", as between g and m s-2" if a gain is near the ratio of two units, else ""."""
     factor = 10.0 ** (abs(gain_dB) / 20.0)
-    near = [
-        text
-        for known, text in UNIT_FACTORS.items()
-        if abs(np.log(factor / known)) < FACTOR_TOLERANCE
-    ]
-    return f", as between {near[0]}" if near else ""
+    for known, text in UNIT_FACTORS.items():
+        if abs(np.log(factor / known)) < FACTOR_TOLERANCE:
+            return f", as between {text}"
+    return ""

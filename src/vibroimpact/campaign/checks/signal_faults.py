@@ -1,5 +1,7 @@
 """Faults of a single signal: missing samples, clipping, drop-outs, drifting levels."""
 
+from itertools import pairwise
+
 import numpy as np
 
 TOP_SHARES = (0.01, 0.02, 0.04)  # widths of the bins at the extreme, as shares of it
@@ -96,9 +98,7 @@ def drop_out(signal: np.ndarray, rate: float, starts_at_rest: bool) -> tuple[flo
     if len(blocks) < 8:
         return None
     moving, changing = blocks.std(axis=1), np.diff(blocks, axis=1).std(axis=1)
-    quiet = (moving < QUIET_SHARE * np.median(moving)) & (
-        changing < QUIET_SHARE * np.median(changing)
-    )
+    quiet = np.all([each < QUIET_SHARE * np.median(each) for each in (moving, changing)], axis=0)
     # A drop-out begins abruptly: motion that has not begun, or that decays, is not one.
     lively = moving > LIVELY_SHARE * np.median(moving)
     abrupt = [
@@ -142,17 +142,9 @@ def level_trend(
     )
     frequency = np.fft.rfftfreq(size, 1.0 / rate)
     edges = np.geomspace(low_Hz, band_Hz[1], TREND_BANDS + 1)
-    inside = [
-        (frequency >= low) & (frequency <= high)
-        for low, high in zip(edges[:-1], edges[1:], strict=True)
-    ]
-    levels = np.array(
-        [
-            10.0 * np.log10(np.maximum(power[:, band].sum(axis=1), np.finfo(float).tiny))
-            for band in inside
-            if band.any()
-        ]
-    ).mean(axis=0)
+    bands = ((frequency >= low) & (frequency <= high) for low, high in pairwise(edges))
+    sums = np.array([power[:, band].sum(axis=1) for band in bands if band.any()])
+    levels = np.mean(10.0 * np.log10(np.maximum(sums, np.finfo(float).tiny)), axis=0)
     place = np.linspace(-0.5, 0.5, count)
     centred = levels - levels.mean()
     change = place @ centred / (place @ place)

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.campaign.file import (
+    DEFAULTS,
     Level,
     campaign_dataset,
     contract_problems,
@@ -104,7 +105,8 @@ def _campaign(sidecar, sensors, cuts, rate, voltage):
     channels, drives = (
         [sensor.channel for sensor in groups[role]] for role in ("response", "force")
     )
-    stated = {} if sidecar.band_Hz is None else {"band_Hz": sidecar.band_Hz}
+    stated = {key: getattr(sidecar, key) for key in DEFAULTS}
+    stated |= {} if sidecar.band_Hz is None else {"band_Hz": sidecar.band_Hz}
     loads = [np.nan] * len(cuts)
     if drives:
         loads = [load_of(force[0], rate, sidecar.band_Hz) for force in stacked["force"]]
@@ -116,11 +118,6 @@ def _campaign(sidecar, sensors, cuts, rate, voltage):
         _levels(sidecar, cuts, loads),
         rate,
         optional,
-        source=sidecar.source,
-        antialias=sidecar.antialias,
-        start_up=sidecar.start_up,
-        period_samples=sidecar.period_samples,
-        transient_periods=sidecar.transient_periods,
         **stated,
     )
 

@@ -46,10 +46,7 @@ class Cut:
 
 
 def cut_records(
-    sensors: list[ResolvedSensor],
-    voltage: list[Signal] | None,
-    rate: float,
-    measured: Measured,
+    sensors: list[ResolvedSensor], voltage: list[Signal] | None, rate: float, measured: Measured
 ) -> list[Cut]:
     """Return the Cut of each record: of the time that all of its signals have.
 

@@ -15,10 +15,7 @@ from .sidecar import NAME, read_sidecar
 from .uff import read_uff
 
 READERS = {
-    ".uff": read_uff,
-    ".unv": read_uff,
-    ".uf": read_uff,
-    ".ufb": read_uff,
+    **dict.fromkeys((".uff", ".unv", ".uf", ".ufb"), read_uff),
     ".mat": read_matlab,
     ".csv": read_csv,
     ".nc": read_netcdf,

@@ -55,16 +55,14 @@ Vector = Annotated[
     tuple[Annotated[Number, Range("only the ratio counts", at_least=-1e6, at_most=1e6)], ...], THREE
 ]
 Clearance_m = Annotated[
-    Number,
-    Range("the radial clearance in metres, 0.2 mm is 2.0e-4", at_least=0, at_most=0.1),
+    Number, Range("the radial clearance in metres, 0.2 mm is 2.0e-4", at_least=0, at_most=0.1)
 ]
 Time_s = Annotated[Number, Range("seconds from the start of the file", at_least=0, at_most=1e7)]
 Repeat = Annotated[
     Whole, Range("0 for the first record of its load and gap", at_least=0, at_most=10**6)
 ]
 PeriodSamples = Annotated[
-    Whole,
-    Range("samples of a period, 0 if the force is not periodic", at_least=0, at_most=10**9),
+    Whole, Range("samples of a period, 0 if the force is not periodic", at_least=0, at_most=10**9)
 ]
 TransientPeriods = Annotated[
     Whole, Range("periods before the steady state", at_least=0, at_most=10**6)

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from vibroimpact.io.signal_files.signals import ImportProblem, Signal, even_samples, whole_rate
-from vibroimpact.io.units import UnitError, si_factor
+from vibroimpact.io.units import SI_OF_KIND, UnitError, si_factor
 
 TIME_RESPONSE, SHOCK = 1, 0  # function types that may hold time records
 KIND_OF_TYPE = {
@@ -21,8 +21,7 @@ KIND_OF_TYPE = {
     13: "contact_force",
 }
 FORCE_TYPES = (13,)  # an excitation; a reaction is a response
-SI_OF_TYPE = {8: "m", 9: "N", 11: "m s-1", 12: "m s-2", 13: "N"}
-LENGTH_POWER = {8: 1, 11: 1, 12: 1}  # of the length unit; forces follow the force unit
+MOTIONS = (8, 11, 12)  # they follow the unit of length, others that of force
 AXES = {1: "x", 2: "y", 3: "z"}
 NOTHING = ("", "NONE", "None", "none")
 UNKNOWN, TIME = 0, 17
@@ -234,13 +233,11 @@ def unit_of(data: dict, type_: int, units: dict | None) -> tuple[str, str]:
     label = _text(data.get("ordinate_axis_units_lab"))
     if label not in NOTHING:
         return label, "label of dataset 58"
-    if units is None or type_ not in SI_OF_TYPE:
+    if units is None or type_ not in KIND_OF_TYPE:
         return "", ""
     # Dataset 164 holds file units per SI unit.
-    factor = 1.0 / (
-        units["length"] ** LENGTH_POWER[type_] if type_ in LENGTH_POWER else units["force"]
-    )
-    unit = SI_OF_TYPE[type_]
+    factor = 1.0 / units["length" if type_ in MOTIONS else "force"]
+    unit = SI_OF_KIND[KIND_OF_TYPE[type_]]
     return unit if abs(factor - 1.0) < 1e-9 else f"{factor:.12g} {unit}", "dataset 164"
 
 

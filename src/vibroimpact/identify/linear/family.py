@@ -57,21 +57,13 @@ def driven_modes(model: ModalModel) -> DrivenModes:
 
     Raises ValueError when no force moves a contact.
     """
-    first = driven_block(model)
-    drive = model.drive_shapes
-    indices = np.sort(
-        np.concatenate([modes for modes, _ in model.blocks if np.any(drive[modes] != 0.0)])
-    )
+    block, drive = driven_block(model), model.drive_shapes
+    driven = [modes for modes, _ in model.blocks if np.any(drive[modes] != 0.0)]
+    indices = np.sort(np.concatenate(driven))
     contact = contact_matrix(model)[indices]
     contact = contact[:, (contact != 0.0).any(axis=0)]
-    return DrivenModes(
-        model.omega[indices],
-        model.damping[indices],
-        contact,
-        drive[indices],
-        indices,
-        np.isin(indices, first),
-    )
+    omega, damping = model.omega[indices], model.damping[indices]
+    return DrivenModes(omega, damping, contact, drive[indices], indices, np.isin(indices, block))
 
 
 @dataclass(frozen=True)
@@ -94,12 +86,8 @@ class FamilyResponse:
 
     def of(self, part: slice | np.ndarray, outputs: slice = slice(None)) -> "FamilyResponse":
         """Return the FamilyResponse of some frequencies (a slice or indices) and outputs."""
-        return FamilyResponse(
-            self.frequency[part],
-            self.free[:, outputs][:, :, part],
-            self.residue[:, outputs][:, :, part],
-            self.compliance[part],
-        )
+        free, residue = (each[:, outputs][:, :, part] for each in (self.free, self.residue))
+        return FamilyResponse(self.frequency[part], free, residue, self.compliance[part])
 
     def frf(self, k: float, c: float) -> np.ndarray:
         """Return the responses (force, output, frequency) in m/N for k in N/m and c in N s/m."""
@@ -139,12 +127,8 @@ class LinearFamily:
         self._root = None if force_psd is None else np.sqrt(force_psd)
         self._receptance = modes.receptance(2j * np.pi * frequency)
         self._compliance, self._vectors = np.linalg.eig(modes.compliance(2j * np.pi * frequency))
-        self._excited = [
-            np.linalg.solve(self._vectors, ((self._receptance * drive) @ modes.contact)[..., None])[
-                ..., 0
-            ]
-            for drive in modes.drive.T
-        ]
+        moved = [(self._receptance * drive) @ modes.contact for drive in modes.drive.T]
+        self._excited = [np.linalg.solve(self._vectors, each[..., None])[..., 0] for each in moved]
 
     def response(
         self, shapes: np.ndarray, part: slice | np.ndarray = slice(None)

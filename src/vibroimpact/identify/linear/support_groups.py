@@ -111,14 +111,9 @@ def driven_word(model: ModalModel) -> str:
 
 def driven_direction(model: ModalModel) -> int:
     """Return 0 or 1: the direction of the contacts that the drive moves most, statically."""
-    driven = np.abs(
-        np.einsum(
-            "mcd,m->cd",
-            model.contact_shapes,
-            model.drive_shapes[:, 0] / np.maximum(model.omega, 1.0) ** 2,
-        )
-    ).sum(axis=0)
-    return int(np.argmax(driven))
+    static = model.drive_shapes[:, 0] / np.maximum(model.omega, 1.0) ** 2
+    moved = np.abs(np.einsum("mcd,m->cd", model.contact_shapes, static))
+    return int(np.argmax(moved.sum(axis=0)))
 
 
 def _name(vector: np.ndarray, other: str) -> str:

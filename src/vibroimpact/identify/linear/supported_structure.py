@@ -12,8 +12,6 @@ One small solve per frequency gives the response and its derivatives with respec
 stiffnesses and dampings.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -40,7 +38,7 @@ class Observed:
     contact: np.ndarray
     part: slice | np.ndarray
 
-    def outputs(self, chosen: np.ndarray) -> Observed:
+    def outputs(self, chosen: np.ndarray) -> "Observed":
         """Return the Observed of some outputs: (output,) bool."""
         return Observed(self.free[:, chosen], self.contact[:, :, chosen], self.part)
 
@@ -90,17 +88,9 @@ class SupportedStructure:
         free = self._driven(outputs, part)
         return Observed(free, transfer(self._receptance[part], self.contact, outputs), part)
 
-    def dynamic_stiffness(
-        self, k: np.ndarray, c: np.ndarray, part: slice | np.ndarray = slice(None)
-    ) -> np.ndarray:
-        """Return (frequency, contact_row) k + i omega c in N/m; k, c (direction,)."""
-        laplace = 2j * np.pi * self.frequency[part, None]
-        return k[self.owner] + laplace * c[self.owner]
-
     def frf(self, observed: Observed, k: np.ndarray, c: np.ndarray) -> np.ndarray:
         """Return the responses (frequency, output, channel) in m/N; k N/m, c N s/m (direction,)."""
-        support = self.dynamic_stiffness(k, c, observed.part)
-        matrix = self._coupled(support, observed.part)
+        support, matrix = self._coupled(k, c, observed.part)
         moved = np.linalg.solve(matrix, self._reached[observed.part])
         return observed.free - observed.contact.swapaxes(1, 2) @ (support[..., None] * moved)
 
@@ -111,13 +101,10 @@ class SupportedStructure:
 
         The derivatives are by the dynamic stiffness of each direction.
         """
-        support = self.dynamic_stiffness(k, c, observed.part)
+        support, matrix = self._coupled(k, c, observed.part)
         reached = self._reached[observed.part]
         channels = reached.shape[2]
-        moved = np.linalg.solve(
-            self._coupled(support, observed.part),
-            np.concatenate([reached, observed.contact], axis=2),
-        )
+        moved = np.linalg.solve(matrix, np.concatenate([reached, observed.contact], axis=2))
         driven, seen = moved[..., :channels], moved[..., channels:].swapaxes(1, 2)
         response = observed.free - observed.contact.swapaxes(1, 2) @ (support[..., None] * driven)
         slopes = [
@@ -126,12 +113,17 @@ class SupportedStructure:
         ]
         return response, np.array(slopes)
 
-    def _coupled(self, support: np.ndarray, part: slice | np.ndarray) -> np.ndarray:
-        """Return (frequency, contact_row, contact_row) I + G diag(s)."""
+    def _coupled(
+        self, k: np.ndarray, c: np.ndarray, part: slice | np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return (s = k + i omega c (frequency, contact_row) in N/m, I + G diag(s) (frequency,
+        contact_row, contact_row)); k, c (direction,).
+        """
+        support = k[self.owner] + 2j * np.pi * self.frequency[part, None] * c[self.owner]
         matrix = self._compliance[part] * support[:, None, :]
         rows = np.arange(matrix.shape[1])
         matrix[:, rows, rows] += 1.0
-        return matrix
+        return support, matrix
 
     def undamped_modes(self, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return (omega (value,) rad/s ascending, vectors (mode, value)) with k (direction,)."""

@@ -134,12 +134,8 @@ def segment_correlation(spectra: ConfigPart, sampling_frequency_Hz: float, lags:
 
     It holds for white noise.
     """
-    length, step, _ = segment_layout(
-        round(spectra.segment_s * sampling_frequency_Hz),
-        sampling_frequency_Hz,
-        spectra.segment_s,
-        spectra.overlap,
-    )
+    layout = sampling_frequency_Hz, spectra.segment_s, spectra.overlap
+    length, step, _ = segment_layout(round(spectra.segment_s * sampling_frequency_Hz), *layout)
     window = window_values(spectra.window, length)
     products = [
         np.dot(window[: max(length - lag * step, 0)], window[lag * step :])

@@ -45,16 +45,10 @@ def read_csv(path: str | Path) -> list[Signal]:
     }
     table = _numbers(path, lines, (names, empty), separator)
     kept = [name for index, name in enumerate(names) if index not in empty]
-    return signals_of_arrays(
-        Arrays(
-            path,
-            {name: table[:, index] for index, name in enumerate(kept)},
-            units,
-            "header of the file",
-            note=note,
-            lines=np.array([number for number, _ in lines]),
-        )
-    )
+    columns = {name: table[:, index] for index, name in enumerate(kept)}
+    places = np.array([number for number, _ in lines])
+    arrays = Arrays(path, columns, units, "header of the file", note=note, lines=places)
+    return signals_of_arrays(arrays)
 
 
 def _numbered_lines(path):

@@ -108,17 +108,12 @@ class ContactLaws:
         """
         if "land_point" in columns:
             columns = {"land_extra_gap": np.zeros(len(columns["land_point"]))} | columns
-        return replace(
-            self,
-            **{
-                name: (
-                    np.broadcast_to(value, np.shape(getattr(self, name))).copy()
-                    if name in POINT_COLUMNS
-                    else value
-                )
-                for name, value in columns.items()
-            },
-        )
+        filled = {
+            name: np.broadcast_to(value, np.shape(self.gap)).copy()
+            for name, value in columns.items()
+            if name in POINT_COLUMNS
+        }
+        return replace(self, **(columns | filled))
 
 
 POINT_COLUMNS = tuple(

@@ -40,14 +40,10 @@ def element_rows(
     point_rows: function of a point's name that returns its displacement rows (3, dof).
     dofs: number of degrees of freedom.
     """
-    rows = [
-        unit_vector(element.direction)
-        @ (
-            point_rows(element.point)
-            - (point_rows(element.other_point) if element.other_point else 0.0)
-        )
-        for element in elements
-    ]
+    rows = []
+    for element in elements:
+        other = point_rows(element.other_point) if element.other_point else 0.0
+        rows.append(unit_vector(element.direction) @ (point_rows(element.point) - other))
     return np.array(rows).reshape(-1, dofs)
 
 

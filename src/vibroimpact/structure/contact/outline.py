@@ -5,8 +5,6 @@ The two axes are the support's transverse directions. A profile is circular, pla
 with other names are resolved by `profiles.plain_profile`.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from vibroimpact.config.stage_settings import ConfigPart

@@ -190,15 +190,12 @@ def _directions(centreline: Centreline, support: ConfigPart, places: np.ndarray)
     """
     middle = centreline.direction(centreline.locate(support.at_m, f"support {support.name}"))
     directions = transverse_directions(middle)
-    tangents = [centreline.direction(place) for place in places]
-    return np.array(
-        [
-            directions
-            if np.array_equal(tangent, middle)
-            else carried_directions(directions, tangent)
-            for tangent in tangents
-        ]
-    )
+
+    def turned(tangent: np.ndarray) -> np.ndarray:
+        same = np.array_equal(tangent, middle)
+        return directions if same else carried_directions(directions, tangent)
+
+    return np.array([turned(centreline.direction(place)) for place in places])
 
 
 def _per_point(support: ConfigPart, key: str, axes: int = 0) -> np.ndarray:
