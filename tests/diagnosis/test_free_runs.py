@@ -58,7 +58,7 @@ def test_a_record_is_not_off_where_one_run_whirls_as_it_does(compared):
     assert replace(compared, measured=whirling[:, 3].copy(), after=whirling).surely_off() == []
 
 
-def test_a_completion_is_farther_off_only_beyond_the_scatter_of_runs(compared):
+def test_a_completion_is_farther_off_beyond_the_scatter_of_runs(compared):
     records = range(len(compared.signals.load))
     louder = replace(compared, after=4.0 * compared.after, measured=compared.before[:, 0])
     assert louder.farther(records)

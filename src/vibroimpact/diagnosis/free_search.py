@@ -182,7 +182,9 @@ def _candidates(comparison: Comparison, searched: Search, base: Hypothesis) -> l
     points = [base.point.beside(each.point.terms[-1]) for each in chosen]
     opposed = [each.gain < -LEAST_GAIN * lines for each in chosen]
     weaker = [
-        _scan(comparison, point, WEAKER) for point, less in zip(points, opposed, strict=True) if less
+        _scan(comparison, point, WEAKER)
+        for point, less in zip(points, opposed, strict=True)
+        if less
     ]
     found = iter(holding_lines(bench, [own for each in weaker for own in each]))
     highest, allowed = _highest(bench, before), []
