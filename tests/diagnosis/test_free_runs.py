@@ -88,7 +88,7 @@ def test_what_the_model_does_not_move_is_compared_with_noise(compared):
     assert row["before_dB"] is not None and row["before_dB"] < 200.0
 
 
-def test_a_channel_that_rests_in_measurement_and_model_is_not_compared(compared):
+def test_a_channel_that_rests_in_both_is_not_compared(compared):
     """It measures what a sensor picks up across its axis, a thousandth of the motion."""
     records, factor = range(len(compared.signals.load)), np.ones((len(compared.signals.names), 1))
     factor[1] = 1.0e-8

@@ -19,8 +19,8 @@ from vibroimpact.integration.contact_convergence import IntegrationError
 
 from .constants import FREE_EXCESS_DB, LEFT_SHARE
 from .explanations import Point, Structure
-from .measurement.signals import Signals
 from .measurement.sensed_motion import moving, orders
+from .measurement.signals import Signals
 from .measurement.simulated_records import simulate_records
 from .measurement.stretches import MOVING, rates_of, valid_samples
 

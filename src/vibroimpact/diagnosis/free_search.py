@@ -188,8 +188,8 @@ def _candidates(comparison: Comparison, searched: Search, base: Hypothesis) -> l
     ]
     found = iter(holding_lines(bench, [own for each in weaker for own in each]))
     highest, allowed = _highest(bench, before), []
-    for each in weaker:
-        good = [own for own, at in zip(each, found, strict=False) if misfit(bench, at) < highest]
+    for ladder in weaker:
+        good = [own for own in ladder if misfit(bench, next(found)) < highest]
         allowed += good[:1]
     return [*fitted, *(p for p, less in zip(points, opposed, strict=True) if not less), *allowed]
 
