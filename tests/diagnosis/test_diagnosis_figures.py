@@ -17,7 +17,7 @@ from vibroimpact.reports.figures.diagnosis.law import (
     pressed,
 )
 from vibroimpact.reports.figures.diagnosis.place import place_figure
-from vibroimpact.reports.figures.diagnosis.psd import psd_figure
+from vibroimpact.reports.figures.diagnosis.psd import chosen_channels, psd_figure
 from vibroimpact.reports.figures.diagnosis.sheets import diagnosis_figures
 from vibroimpact.reports.figures.drawing import drawn
 from vibroimpact.reports.figures.style import tidy_log_axes
@@ -120,6 +120,7 @@ def made_up_psd(channels=7, records=4):
     return xr.Dataset(
         {
             "psd": (("state", "record", "channel", "frequency"), psd),
+            "compared": (("record", "channel"), np.ones((records, channels), np.int8)),
             "load": ("record", 2.0 ** np.arange(records), {"units": "N"}),
             "record_name": ("record", [f"level_{row}" for row in range(records)]),
             "channel_name": ("channel", [f"sensor_{row:02d}_y" for row in range(channels)]),
@@ -249,6 +250,13 @@ def test_a_failed_free_run_does_not_stop_the_figure():
     sheet = drawn(psd_figure(psd, verdict_of()))
     tidy_log_axes(sheet.figure)
     assert layout_faults(sheet.figure) == []
+
+
+def test_channels_that_are_not_compared_are_not_shown():
+    psd = made_up_psd()
+    assert chosen_channels(psd)[0] == 5
+    psd["compared"].values[:, 5] = 0
+    assert 5 not in chosen_channels(psd)
 
 
 @pytest.mark.parametrize("kind", CONCLUSIONS)

@@ -303,6 +303,7 @@ def _spectra(runs: FreeRuns) -> xr.Dataset:
                 values.astype(np.float32),
                 {"units": "squared SI unit of the channel per Hz"},
             ),
+            "compared": (("record", "channel"), runs.compared.astype(np.int8)),
             "load": ("record", signals.load, {"units": signals.load_unit}),
             "record_name": ("record", list(signals.record_names)),
             "channel_name": ("channel", list(signals.names)),

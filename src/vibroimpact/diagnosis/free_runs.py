@@ -154,6 +154,11 @@ class FreeRuns:
         return out
 
     @property
+    def compared(self) -> np.ndarray:
+        """Return (record, channel) bool: whether a channel is compared in some band."""
+        return self._cells["known"].any(axis=-1)
+
+    @property
     def resting(self) -> list[str]:
         """Return the names of the channels that rest in every record, and measure more than their
         noise in one.

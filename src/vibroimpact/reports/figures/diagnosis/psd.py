@@ -18,7 +18,6 @@ MOST_RECORDS, CHANNELS_SHOWN = 3, 2
 BELOW = 1.0e-8  # of the largest PSD: the lowest drawn
 LOWEST = 1.0e-5  # of the peak of a measured PSD: a lower one is no response
 LOWEST_HZ, PASSED = 1.0, 0.78  # drawn from; of the highest line, which a filter has passed
-MOVES = 1.0e-3  # of the power of the channel of its kind that moves most
 
 CAPTION = (
     "PSD, measured (black) and of free runs under the measured force, not held to any sensor: with"
@@ -32,8 +31,8 @@ def psd_figure(psd: xr.Dataset, verdict: Verdict) -> Plot:
     """Return the Plot with a row per channel and a column per record, for those that matter most.
 
     psd: variable psd (state: measured, before, after; record, channel, frequency) in unit²/Hz, NaN
-    of a run that failed, with frequency in Hz, load, record_name, split (record,), channel_name and
-    channel_kind (channel,).
+    of a run that failed, with frequency in Hz, load, record_name, split (record,), channel_name,
+    channel_kind (channel,) and compared (record, channel), 1 or 0.
     """
     records, channels = chosen_records(psd), chosen_channels(psd)
     completed = bool(verdict.shown_effects())
@@ -55,18 +54,13 @@ def psd_figure(psd: xr.Dataset, verdict: Verdict) -> Plot:
 
 def _gap(psd):
     """Return (record, channel) dB: RMS of measured over simulated PSD with the model as given, at
-    lines above LOWEST of the measured peak; 0 for channels that hardly move, measured or simulated,
-    compared with others of their kind.
+    lines above LOWEST of the measured peak; 0 where they are not compared.
     """
     values = np.maximum(psd["psd"].values[:2].astype(float), np.finfo(float).tiny)
     apart = 10.0 * np.log10(values[0] / values[1])
     counted = np.isfinite(apart) & (values[0] > LOWEST * values[0].max(axis=-1, keepdims=True))
-    power = np.nan_to_num(values).max(axis=0).mean(axis=-1)
-    kinds = psd["channel_kind"].values
-    largest = [power[:, kinds == kind].max(axis=-1) for kind in kinds]
-    moves = power > MOVES * np.transpose(largest)
     sums = np.sum(np.where(counted, apart, 0.0) ** 2, axis=-1)
-    return np.sqrt(sums / np.maximum(counted.sum(axis=-1), 1)) * moves
+    return np.sqrt(sums / np.maximum(counted.sum(axis=-1), 1)) * psd["compared"].values
 
 
 def chosen_records(psd: xr.Dataset) -> list[int]:
