@@ -19,6 +19,8 @@ from vibroimpact.config.stage_keys import answer_digest
 from vibroimpact.equivalent_support.answer import NOT_MOVED
 from vibroimpact.equivalent_support.answer_text import as_plain, as_text
 from vibroimpact.equivalent_support.study_tables import (
+    RECOMMENDED,
+    SUMMARY,
     recommended_rows_of,
     require_tables_of,
     summary_rows_of,
@@ -72,6 +74,19 @@ def test_tables_of_another_configuration_are_refused(study, study_config, table,
     values["spectra"]["overlap"], values["overlay"]["noise"] = 0.65, 0.3  # of a figure alone
     write_run_files(study, values, ["snakemake"])
     assert equivalent(study, 4.0, 1.0e-4).groups[0].k.resolved
+
+
+@pytest.mark.parametrize("table", [SUMMARY, RECOMMENDED])
+def test_a_table_of_an_older_version_is_refused(study, table):
+    summary = read_table(study / SUMMARY)
+    write_table(equivalent_rows(summary), study / RECOMMENDED, EQUIVALENT_COLUMNS)
+    rows = [
+        {name: value for name, value in row.items() if name != "flag"}
+        for row in read_table(study / table)
+    ]
+    write_table(rows, study / table, tuple(rows[0]))
+    with pytest.raises(EquivalentError, match=f"{table}: lacks the columns flag, .* run the study"):
+        equivalent(study, 4.0, 1.0e-4)
 
 
 def test_a_power_law_is_interpolated_exactly_at_any_gap(study):

@@ -1,5 +1,6 @@
 """The tables of a study as the answer needs them: by method, and recommended."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +9,11 @@ from vibroimpact.config.reading import Config
 from vibroimpact.config.stage_keys import answer_digest
 from vibroimpact.config.yaml_file import read_yaml
 from vibroimpact.io.records import RecordError, read_table
-from vibroimpact.study.equivalent_table import DIGEST_COLUMN, equivalent_rows
+from vibroimpact.study.equivalent_table import (
+    DIGEST_COLUMN,
+    EQUIVALENT_COLUMNS,
+    equivalent_rows,
+)
 from vibroimpact.study.own_results import other_configuration
 from vibroimpact.study.run_files import CONFIG_FILE
 
@@ -16,6 +21,7 @@ from .answer import EquivalentError
 
 SUMMARY, RECOMMENDED = "consistency_summary.csv", "equivalent.csv"
 TEXTS = (DIGEST_COLUMN, "group", "direction")  # columns: a name may read as a number
+METHODS_COLUMNS = ("group", "direction", "verdict_k", "verdict_c", "reason", "flag")  # of SUMMARY
 
 
 def summary_rows_of(folder: Path) -> list[dict[str, Any]]:
@@ -33,6 +39,7 @@ def summary_rows_of(folder: Path) -> list[dict[str, Any]]:
         ) from error
     if not rows:
         raise EquivalentError(f"{path}: has no rows: the study identified nothing")
+    _require_columns(path, rows, METHODS_COLUMNS)
     _require_own(path, rows)
     return rows
 
@@ -45,8 +52,19 @@ def recommended_rows_of(folder: Path, summary: list[dict[str, Any]]) -> list[dic
     if not path.is_file():
         return equivalent_rows(summary)
     rows = read_table(path, TEXTS)
+    _require_columns(path, rows, EQUIVALENT_COLUMNS)
     _require_own(path, rows)
     return rows
+
+
+def _require_columns(path: Path, rows: list[dict[str, Any]], columns: Sequence[str]) -> None:
+    """Raise EquivalentError if a table lacks columns, other than the digest."""
+    lacks = {*columns} - {DIGEST_COLUMN} - rows[0].keys() if rows else ()
+    if lacks:
+        raise EquivalentError(
+            f"{path}: lacks the columns {', '.join(sorted(lacks))}, as a table of an older version"
+            " does: run the study again"
+        )
 
 
 def _require_own(path: Path, rows: list[dict[str, Any]]) -> None:
