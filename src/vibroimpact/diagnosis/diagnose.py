@@ -66,7 +66,7 @@ SENSITIVE = (
     " sensitive to them, and no effect is asked for."
 )
 AT_REST = (
-    "as measured and as simulated, less than 2 % of the speed of the fastest channel. It is not"
+    "as measured and as simulated, less than 2 % of the speed of the fastest channel, and so not"
     " compared: a sensor picks up as much across its axis, and a force a degree off its direction"
     " makes as much."
 )
