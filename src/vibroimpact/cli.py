@@ -11,8 +11,7 @@ from pathlib import Path
 
 from vibroimpact import __version__, stability_command
 from vibroimpact.diagnosis import diagnose_command, supports_command
-from vibroimpact.equivalent_support import contact_command
-from vibroimpact.equivalent_support.command import add_arguments
+from vibroimpact.equivalent_support.command import add_arguments, add_contact_arguments
 from vibroimpact.study.wear import command as wear_command
 
 # Read when numpy is first imported. The matrices are small: threads would wait for each other, and
@@ -413,7 +412,7 @@ COMMANDS = {
         " argument gives.",
     ),
     "contact": (
-        contact_command.add_arguments,
+        add_contact_arguments,
         "write the contact of the supports for another finite-element program",
         "Write gaps and contact stiffnesses of the supports of a configuration as"
         " nonlinear elements of another program, at a gap of the case. For the equivalent linear"

@@ -15,7 +15,8 @@ from vibroimpact.equivalent_support.command import FORMATS
 from vibroimpact.io.records import write_table
 from vibroimpact.study.equivalent_table import EQUIVALENT_COLUMNS
 
-ROOT = Path(__file__).parents[2]
+CONFIG = Path(__file__).parents[2] / "config" / "study.yaml"
+CASE = ("--load", 4, "--gap", 1e-4)
 
 
 @pytest.fixture
@@ -29,16 +30,20 @@ def run(capsys):
     return run
 
 
+def study_in_results(base, name, model):
+    """The folder of a study whose k is a power of load over gap."""
+    folder = base / "results" / name
+    folder.mkdir(parents=True)
+    return made_up_study(folder, model)
+
+
 @pytest.fixture
 def study(tmp_path, study_model):
-    """The folder of a study whose k is a power of load over gap."""
-    folder = tmp_path / "made_up"
-    folder.mkdir()
-    return made_up_study(folder, study_model)
+    return study_in_results(tmp_path, "made_up", study_model)
 
 
 def test_the_answer_is_printed_as_a_table(run, study):
-    code, output, errors = run(study, "--load", 4, "--gap", 1e-4)
+    code, output, errors = run(study, *CASE)
     assert (code, errors) == (0, "")
     assert output.startswith(
         "Study 'made_up': equivalent support at 4 N RMS and a gap of 0.1 mm (load over gap 4e+04"
@@ -50,19 +55,17 @@ def test_the_answer_is_printed_as_a_table(run, study):
 
 
 def test_json_and_csv_hold_the_same_numbers(run, study):
-    values = json.loads(run(study, "--load", 4, "--gap", 1e-4, "--json")[1])
-    (row,) = csv.DictReader(io.StringIO(run(study, "--load", 4, "--gap", 1e-4, "--csv")[1]))
+    values = json.loads(run(study, *CASE, "--json")[1])
+    (row,) = csv.DictReader(io.StringIO(run(study, *CASE, "--csv")[1]))
     k = values["groups"][0]["k"]
     assert k["value"] == float(row["k_N_per_m"]) == pytest.approx(k_law(4e4))
     assert (k["low"], k["high"]) == (float(row["k_low"]), float(row["k_high"]))
 
 
 def test_a_study_is_found_by_its_name_in_results(run, tmp_path, monkeypatch, study_model):
-    folder = tmp_path / "results" / "mine"
-    folder.mkdir(parents=True)
-    made_up_study(folder, study_model)
+    study_in_results(tmp_path, "mine", study_model)
     monkeypatch.chdir(tmp_path)
-    assert run("mine", "--load", 4, "--gap", 1e-4)[0] == 0
+    assert run("mine", *CASE)[0] == 0
 
 
 def test_outside_the_grid_is_a_sentence_and_code_1(run, study):
@@ -81,8 +84,7 @@ def test_what_is_not_resolved_gives_code_1_and_no_file(run, study, tmp_path):
 
 
 def test_methods_that_differ_give_code_1_until_one_is_taken(run, tmp_path, study_model):
-    study = disputed_study(tmp_path, study_model)
-    case = (study, "--load", 4, "--gap", 1e-4)
+    case = (disputed_study(tmp_path, study_model), *CASE)
     code, output, errors = run(*case)
     assert code == 1 and "no recommended value: the methods differ" in output
     assert "To take the value of one method: --anyway lscf, ods or broadband" in errors
@@ -114,10 +116,9 @@ def test_an_upper_bound_is_exported_as_a_sentence(run, tmp_path, study_model):
 def test_the_export_holds_the_answer(run, study, tmp_path):
     path = tmp_path / "out.bdf"
     options = ("--export", "nastran", path, "--points", "one", "--unit", "mm", "--across", "none")
-    code, output, errors = run(study, "--load", 4, "--gap", 1e-4, *options)
+    code, output, errors = run(study, *CASE, *options)
     assert (code, errors) == (0, "") and "k = " in output
-    found = nastran(path.read_text())
-    place, stiffness, _ = found["left"]
+    place, stiffness, _ = nastran(path.read_text())["left"]
     assert place == pytest.approx([-300.0, 0.0, 350.0])
     assert stiffness[1, 1] == pytest.approx(1.0e-3 * k_law(4e4)) and stiffness[0, 0] == 0.0
 
@@ -138,46 +139,39 @@ def test_a_wrong_call_is_a_sentence(run, arguments, part):
 
 def test_a_misspelled_study_lists_those_there_are(run, tmp_path, monkeypatch, study_model):
     monkeypatch.chdir(tmp_path)
-    case = ("--load", 4, "--gap", 1e-4)
-    assert "Run `snakemake -j2 --configfile FILE`" in run("mein", *case)[2]
+    assert "Run `snakemake -j2 --configfile FILE`" in run("mein", *CASE)[2]
     for name in ("mine", "other"):
-        (tmp_path / "results" / name).mkdir(parents=True)
-        made_up_study(tmp_path / "results" / name, study_model)
-    assert "Did you mean mine? There are: mine, other" in run("mein", *case)[2]
-    assert "is there. There are: mine, other" in run("xyz", *case)[2]
+        study_in_results(tmp_path, name, study_model)
+    assert "Did you mean mine? There are: mine, other" in run("mein", *CASE)[2]
+    assert "is there. There are: mine, other" in run("xyz", *CASE)[2]
 
 
 def test_a_gap_in_millimetres_is_recognised(run, study):
     code, output, errors = run(study, "--load", 4, "--gap", 0.1)
     assert (code, output) == (1, "")
     assert "gaps are in metres, 0.1 mm is 0.0001" in errors
-    config = ROOT / "config" / "study.yaml"
-    errors = run("--estimate", "--config", config, "--load", 5, "--gap", 0.25)[2]
+    errors = run("--estimate", "--config", CONFIG, "--load", 5, "--gap", 0.25)[2]
     assert "gaps are in metres, 0.25 mm is 0.00025" in errors
 
 
 def test_an_unknown_format_and_a_missing_folder_are_sentences(run, study, tmp_path):
-    case = (study, "--load", 4, "--gap", 1e-4)
-    assert "format 'ansys' is none of nastran" in run(*case, "--export", "ansys", "x")[2]
+    assert "format 'ansys' is none of nastran" in run(study, *CASE, "--export", "ansys", "x")[2]
     (tmp_path / "file").write_text("")
-    code, _, errors = run(*case, "--export", "csv", tmp_path / "file" / "x.csv")
+    code, _, errors = run(study, *CASE, "--export", "csv", tmp_path / "file" / "x.csv")
     assert code == 1 and "cannot be written" in errors
 
 
 def test_a_study_without_its_model_is_a_sentence(run, study):
     (study / "model.nc").unlink()
-    code, _, errors = run(study, "--load", 4, "--gap", 1e-4)
+    code, _, errors = run(study, *CASE)
     assert code == 1 and "give the study's configuration with --config FILE" in errors
-    config = ROOT / "config" / "study.yaml"
-    assert run(study, "--load", 4, "--gap", 1e-4, "--config", config)[0] == 0
+    assert run(study, *CASE, "--config", CONFIG)[0] == 0
 
 
 def test_the_estimate_needs_no_results(run, tmp_path):
     path = tmp_path / "out.csv"
-    config = ROOT / "config" / "study.yaml"
-    code, output, errors = run(
-        "--estimate", "--config", config, "--load", 5, "--gap", 0.25e-3, "--export", "csv", path
-    )
+    case = ("--config", CONFIG, "--load", 5, "--gap", 0.25e-3)
+    code, output, errors = run("--estimate", *case, "--export", "csv", path)
     assert (code, errors) == (0, "")
     assert output.startswith("Estimate without a simulation for 'gv_local'")
     assert "This is an estimate from a law, not a result" in output

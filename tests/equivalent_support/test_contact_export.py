@@ -1,16 +1,14 @@
 """Exported contact is read back: at any displacement it has the force of the support's law."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
 from tests.support import exported_contacts as readers
 from vibroimpact.cli import main
 from vibroimpact.equivalent_support.answer import EquivalentError
-from vibroimpact.equivalent_support.contact_points import (
-    ContactPoint,
-    ContactSet,
-    contact_set,
-)
+from vibroimpact.equivalent_support.contact_points import ContactPoint, ContactSet, contact_set
 from vibroimpact.equivalent_support.export_formats.registry import contacts_text
 
 GAP, K = 1.0e-4, 4.0e5
@@ -27,50 +25,34 @@ def tilted_axes():
 
 def point(name, axes, lands=(), **changes):
     """A contact point at a place of its own."""
-    angles = np.radians(np.array(lands))
+    angles, place = np.radians(np.array(lands)), np.array([0.3, -0.2, 1.5])
     normals = np.column_stack([np.cos(angles), np.sin(angles)]) @ axes
-    given = {
-        "name": name,
-        "position": np.array([0.3, -0.2, 1.5]),
-        "axes": np.asarray(axes),
-        "offset": np.zeros(3),
-        "gap": GAP,
-        "stiffness": K,
-        "lands": normals.reshape(-1, 3),
-    }
-    return ContactPoint(**given | changes)
+    own = ContactPoint(name, place, np.asarray(axes), np.zeros(3), GAP, K, normals.reshape(-1, 3))
+    return dataclasses.replace(own, **changes)
 
 
 def own_force(own, u):
     """The force of the law: k times the penetration of the circle, or of each land."""
     d = u - own.offset
-    if len(own.lands):
-        gaps = own.gap + own.extra_gap + np.zeros(len(own.lands))
-        return sum(
-            readers.normal_force(normal, gap, own.stiffness, d)
-            for normal, gap in zip(own.lands, gaps, strict=True)
-        )
-    return readers.circle_force(own.axes, own.gap, own.stiffness, d)
+    if not len(own.lands):
+        return readers.circle_force(own.axes, own.gap, own.stiffness, d)
+    gaps = own.gap + own.extra_gap + np.zeros(len(own.lands))
+    lands = zip(own.lands, gaps, strict=True)
+    return sum(readers.normal_force(*land, own.stiffness, d) for land in lands)
 
 
 def agrees(own, form, unit="m"):
     """Assert that a point written in a format has its own force at many displacements."""
     text, _ = contacts_text(ContactSet((own,)), form, unit)
     length, force = MILLIMETRES[unit]
-    places = {own.name: length * own.position}
-    read = (
-        getattr(readers, form)(text, places)
-        if form == "code_aster"
-        else getattr(readers, form)(text)
-    )
+    places = [{own.name: length * own.position}] if form == "code_aster" else []
+    read = getattr(readers, form)(text, *places)
     generator = np.random.default_rng(3)
-    touched = 0
-    for across in generator.uniform(-3.0 * GAP, 3.0 * GAP, (60, 2)):
-        u = across @ own.axes
-        expected = force * own_force(own, u)
-        touched += bool(np.any(expected))
-        assert read(own.name, length * u) == pytest.approx(expected, abs=1e-5 * K * GAP * force)
-    assert 20 < touched <= 60
+    moved = generator.uniform(-3.0 * GAP, 3.0 * GAP, (60, 2)) @ own.axes
+    expected = force * np.array([own_force(own, u) for u in moved])
+    found = np.array([read(own.name, length * u) for u in moved])
+    assert found == pytest.approx(expected, abs=1e-5 * K * GAP * force)
+    assert 20 < np.any(expected, axis=1).sum() <= 60
 
 
 @pytest.mark.parametrize("unit", ["m", "mm"])
@@ -151,17 +133,13 @@ def test_the_contact_of_a_study_is_that_of_its_model(study_config, study_model):
 
 def test_the_command_writes_contact(tmp_path, capsys):
     path = tmp_path / "contact.py"
-    arguments = [
-        "contact",
-        "config/examples/u_tube_drilled.yaml",
-        "--export",
-        "opensees",
-        str(path),
-    ]
-    assert main([*arguments, "--gap", "1e-4"]) == 1  # damping and friction are left out
+    drilled, bars = (f"config/examples/{name}.yaml" for name in ("u_tube_drilled", "u_bend_bars"))
+    export = ["--export", "opensees", str(path), "--gap"]
+    assert main(["contact", drilled, *export, "1e-4"]) == 1  # damping and friction are left out
     told = capsys.readouterr()
     assert "18 points" in told.out and told.err.count("left out") == 2
     assert readers.opensees(path.read_text())("hot_1_1", np.array([2e-4, 0.0, 0.0]))[0] < 0.0
-    assert main([*arguments, "--gap", "-1"]) == 1 and "--gap -1 must" in capsys.readouterr().err
-    preloaded = ["contact", "config/examples/u_bend_bars.yaml", *arguments[2:], "--gap", "1e-4"]
-    assert main(preloaded) == 1 and "bars_apex: preload_N" in capsys.readouterr().err
+    assert main(["contact", drilled, *export, "-1"]) == 1
+    assert "--gap -1 must" in capsys.readouterr().err
+    assert main(["contact", bars, *export, "1e-4"]) == 1
+    assert "bars_apex: preload_N" in capsys.readouterr().err

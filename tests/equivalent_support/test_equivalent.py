@@ -8,6 +8,7 @@ import pytest
 from tests.support.study_tables import (
     FACTORS,
     GAPS,
+    LOADS,
     disputed_study,
     k_law,
     made_up_study,
@@ -29,6 +30,17 @@ from vibroimpact.io.records import read_table, write_table
 from vibroimpact.study.equivalent_table import EQUIVALENT_COLUMNS, equivalent_rows
 from vibroimpact.study.run_files import write_run_files
 
+K_COLUMNS = ("k_median", "k_low", "k_high")
+LOST = dict.fromkeys(K_COLUMNS, np.nan)
+
+
+def recommended(direction, agreement, reason, **values):
+    """A row of equivalent.csv of all supports; agreement and reason are those of k and c."""
+    row = dict.fromkeys(EQUIVALENT_COLUMNS, np.nan)
+    row |= {"group": "all", "direction": direction, "flag": ""}
+    row |= {"agreement_k": agreement, "agreement_c": agreement}
+    return row | {"reason_k": reason, "reason_c": reason} | values
+
 
 @pytest.fixture
 def study(tmp_path, study_model):
@@ -39,10 +51,8 @@ def study(tmp_path, study_model):
 def test_a_case_of_the_grid_is_the_table_itself(study):
     (group,) = equivalent(study, 4.0, 1.0e-4).groups
     assert group.k.value == pytest.approx(k_law(4.0e4), rel=1e-12)  # lscf, the median of three
-    assert (group.k.low, group.k.high) == (
-        pytest.approx(0.9 * 0.96 * k_law(4.0e4)),
-        pytest.approx(1.2 * 1.02 * k_law(4.0e4)),
-    )
+    ends = 0.9 * 0.96 * k_law(4.0e4), 1.2 * 1.02 * k_law(4.0e4)
+    assert (group.k.low, group.k.high) == pytest.approx(ends)
     assert group.c.value == pytest.approx(1.0e-3 * 1.01 * k_law(4.0e4))  # the shape has none
     assert (group.direction, group.supports) == ("y", ("left", "right"))
     assert group.how == "a case of the study: 4 N RMS at 0.1 mm"
@@ -80,11 +90,9 @@ def test_tables_of_another_configuration_are_refused(study, study_config, table,
 def test_a_table_of_an_older_version_is_refused(study, table):
     summary = read_table(study / SUMMARY)
     write_table(equivalent_rows(summary), study / RECOMMENDED, EQUIVALENT_COLUMNS)
-    rows = [
-        {name: value for name, value in row.items() if name != "flag"}
-        for row in read_table(study / table)
-    ]
-    write_table(rows, study / table, tuple(rows[0]))
+    columns = [name for name in read_table(study / table)[0] if name != "flag"]
+    rows = [{name: row[name] for name in columns} for row in read_table(study / table)]
+    write_table(rows, study / table, columns)
     with pytest.raises(EquivalentError, match=f"{table}: lacks the columns flag, .* run the study"):
         equivalent(study, 4.0, 1.0e-4)
 
@@ -108,12 +116,9 @@ def test_the_answer_says_what_it_was_interpolated_from(study):
 
 
 def test_a_gap_that_is_off_widens_the_interval(tmp_path, study_model):
-    rows = [
-        {**row, **{name: 1.3 * row[name] for name in ("k_median", "k_low", "k_high")}}
-        if row["gap_m"] == GAPS[1]
-        else row
-        for row in summary_rows()
-    ]
+    rows = summary_rows()
+    for row in rows:
+        row |= {name: 1.3 * row[name] for name in K_COLUMNS if row["gap_m"] == GAPS[1]}
     study = made_up_study(tmp_path, study_model, rows)
     (group,) = equivalent(study, 2.2, 1.0e-4).groups
     assert "collapse within 30 %" in group.how
@@ -178,16 +183,11 @@ def test_a_study_without_recommended_values_gets_them(tmp_path):
 
 
 def test_the_recommended_table_of_the_study_is_used(study):
-    rows = [
-        dict.fromkeys(EQUIVALENT_COLUMNS, np.nan)
-        | {"gap_m": gap, "load_rms_N": load, "group": "left", "direction": "y", "flag": ""}
-        | {"k_N_per_m": 7.0e4, "k_low": 6.0e4, "k_high": 8.0e4, "secant_c_N_s_per_m": 30.0}
-        | {"agreement_k": "spread", "agreement_c": "unresolved"}
-        | {"reason_k": "", "reason_c": "the record is short"}
-        for gap in GAPS
-        for load in (1.0, 8.0)
-    ]
-    write_table(rows, study / "equivalent.csv")
+    row = recommended("y", "spread", "", group="left", agreement_c="unresolved")
+    row |= {"reason_c": "the record is short", "k_N_per_m": 7.0e4, "k_low": 6.0e4, "k_high": 8.0e4}
+    row |= {"secant_c_N_s_per_m": 30.0}
+    cases = [{"gap_m": gap, "load_rms_N": load} for gap in GAPS for load in (1.0, 8.0)]
+    write_table([row | case for case in cases], study / "equivalent.csv")
     (group,) = equivalent(study, 3.0, 1.0e-4).groups
     assert (group.group, group.supports) == ("left", ("left",))
     assert (group.k.value, group.k.low, group.k.high) == pytest.approx((7.0e4, 6.0e4, 8.0e4))
@@ -212,21 +212,11 @@ def test_tables_of_another_model_are_refused(tmp_path, study_model, group, direc
 
 
 def test_a_direction_that_is_not_driven_says_so(study):
-    rows = summary_rows_of(study)
-    table = [
-        dict.fromkeys(EQUIVALENT_COLUMNS, value)
-        | {name: row[name] for name in ("gap_m", "load_rms_N", "group")}
-        | {"direction": direction, "flag": ""}
-        | dict.fromkeys(("agreement_k", "agreement_c"), agreement)
-        | dict.fromkeys(("reason_k", "reason_c"), reason)
-        for row in rows
-        if row["method"] == "lscf"
-        for direction, value, agreement, reason in (
-            ("y", 5.0e4, "agree", ""),
-            ("x", np.nan, "unresolved", NOT_MOVED),
-        )
-    ]
-    write_table(table, study / "equivalent.csv")
+    numbers = ("k_N_per_m", "k_low", "k_high", "c_N_s_per_m", "c_low", "c_high")
+    moved = recommended("y", "agree", "", **dict.fromkeys(numbers, 5.0e4))
+    both = moved, recommended("x", "unresolved", NOT_MOVED)
+    cases = [{"gap_m": gap, "load_rms_N": load} for gap in GAPS for load in LOADS]
+    write_table([row | case for case in cases for row in both], study / "equivalent.csv")
     answer = equivalent(study, 3.0, 1.5e-4)
     assert answer.groups[0].k.value == pytest.approx(5.0e4) and answer.unresolved == []
     assert not answer.groups[1].moved
@@ -235,8 +225,7 @@ def test_a_direction_that_is_not_driven_says_so(study):
 
 def test_two_methods_are_enough_for_k(tmp_path, study_model):
     """Where the shape gives none, k is the mean of the other two, and the answer says so."""
-    blind = {"k_median": np.nan, "k_low": np.nan, "k_high": np.nan}
-    rows = [row | blind if row["method"] == "ods" else row for row in summary_rows()]
+    rows = [row | LOST if row["method"] == "ods" else row for row in summary_rows()]
     study = made_up_study(tmp_path, study_model, rows)
     answer = equivalent(study, 4.0, 1.0e-4)
     assert answer.groups[0].k.value == pytest.approx(1.01 * k_law(4.0e4))
@@ -271,13 +260,9 @@ def test_a_disputed_value_is_taken_only_when_asked_for(tmp_path, study_model, lo
 
 def test_an_upper_bound_is_an_answer(tmp_path, study_model):
     text = "k < 2.45 kN/m: the tube hardly touches, 0.3 % of the time"
-    row = dict.fromkeys(EQUIVALENT_COLUMNS, np.nan)
-    row |= {"group": "all", "direction": "y", "reason_k": text, "reason_c": text, "flag": ""}
-    row |= {"agreement_k": "unresolved", "agreement_c": "unresolved"}
-    table = [
-        row | {"gap_m": 1.0e-4, "load_rms_N": load, "k_bound": bound, "contact_fraction": 0.003}
-        for load, bound in ((1.0, 2.45e3), (2.0, 2.6e3))
-    ]
+    row = recommended("y", "unresolved", text, gap_m=1.0e-4, contact_fraction=0.003)
+    bounds = ((1.0, 2.45e3), (2.0, 2.6e3))
+    table = [row | {"load_rms_N": load, "k_bound": bound} for load, bound in bounds]
     study = made_up_study(tmp_path, study_model)
     write_table(table, study / "equivalent.csv")
     answer = equivalent(study, 1.0, 1.0e-4)
@@ -307,11 +292,9 @@ def test_the_load_to_add_reaches_the_level_at_a_gap_of_the_study(study):
 
 def test_one_resolved_gap_of_several_is_a_chance_selection(tmp_path, study_model):
     """At 1e4 N/m the wide gap is blind below 2 N: alone it does not count against the other."""
-    lost = dict.fromkeys(("k_median", "k_low", "k_high"), np.nan)
-    rows = [
-        row | lost if row["gap_m"] == GAPS[1] and row["load_rms_N"] < 8.0 else row
-        for row in summary_rows()
-    ]
+    rows = summary_rows()
+    for row in rows:
+        row |= LOST if row["gap_m"] == GAPS[1] and row["load_rms_N"] < 8.0 else {}
     study = made_up_study(tmp_path, study_model, rows)
     (group,) = equivalent(study, 1.2, 1.0e-4).groups  # one of two
     assert group.how.endswith("from gap 0.1 mm; not resolved at 0.3 mm")

@@ -29,44 +29,23 @@ def answer(supports, direction="y", k=K, c=C):
 @pytest.fixture(scope="module")
 def slanted_model():
     """A straight tube at 45 degrees in the plane z = 0, with one plate of unequal stiffnesses."""
-    at = 0.5 * TANGENT
-    return build_model(
-        check_config(
-            {
-                "study": "slanted",
-                "structure": straight_path(
-                    1.2,
-                    [1.0, 1.0, 0.0],
-                    {"outer_diameter_m": 0.02, "wall_thickness_m": 0.001},
-                    (2.0e11, 0.3, 8000.0),
-                    ends=("clamped", "clamped"),
-                    mesh={"elements_per_span": 6},
-                ),
-                "supports": [
-                    {
-                        "name": "plate",
-                        "at_m": list(at),
-                        "height_m": 0.03,
-                        "points": 3,
-                        "stiffness_N_per_m": [1.0e6, 2.0e6, 1.0e6],
-                    }
-                ],
-                "points": {"middle": list(0.6 * TANGENT)},
-                "excitation": {
-                    "kind": "band_limited",
-                    "point": "middle",
-                    "direction": [0.0, 0.0, 1.0],
-                    "band_Hz": [5.0, 200.0],
-                },
-                "grid": {"load_rms_N": [1.0], "gap_m": [1.0e-4]},
-                "record": {
-                    "sensors": {"points": ["middle"], "directions": ["z"]},
-                    "shape_line": {"direction": "z"},
-                },
-            },
-            "slanted",
-        )
-    )
+    pipe = {"outer_diameter_m": 0.02, "wall_thickness_m": 0.001}
+    ends, mesh = ("clamped", "clamped"), {"elements_per_span": 6}
+    plate = {"name": "plate", "at_m": list(0.5 * TANGENT), "height_m": 0.03, "points": 3}
+    force = {"kind": "band_limited", "point": "middle", "direction": [0.0, 0.0, 1.0]}
+    sensors = {"points": ["middle"], "directions": ["z"]}
+    values = {
+        "study": "slanted",
+        "structure": straight_path(
+            1.2, [1.0, 1.0, 0.0], pipe, (2.0e11, 0.3, 8000.0), ends, mesh=mesh
+        ),
+        "supports": [plate | {"stiffness_N_per_m": [1.0e6, 2.0e6, 1.0e6]}],
+        "points": {"middle": list(0.6 * TANGENT)},
+        "excitation": force | {"band_Hz": [5.0, 200.0]},
+        "grid": {"load_rms_N": [1.0], "gap_m": [1.0e-4]},
+        "record": {"sensors": sensors, "shape_line": {"direction": "z"}},
+    }
+    return build_model(check_config(values, "slanted"))
 
 
 @pytest.mark.parametrize("form", READERS)
@@ -116,9 +95,8 @@ def test_the_other_direction_can_be_left_free(form, study_model):
 def test_two_directions_have_each_its_own_k(form, study_model):
     first = answer(study_model.support_names).groups[0]
     both = (first, dataclasses.replace(first, direction="x", k=Span(3.0e4, 2.0e4, 4.0e4)))
-    springs = point_springs(
-        dataclasses.replace(answer(study_model.support_names), groups=both), study_model, "one"
-    )
+    own = dataclasses.replace(answer(study_model.support_names), groups=both)
+    springs = point_springs(own, study_model, "one")
     for _, stiffness, _ in READERS[form](springs_text(springs, form)).values():
         np.testing.assert_allclose(stiffness, np.diag([3.0e4, K, 0.0]), rtol=1e-8)
 
@@ -144,30 +122,26 @@ def test_only_resolved_supports_are_written(study_model):
     assert springs.left_out[-1] == "support right has no spring"
 
 
-def test_nothing_resolved_is_not_exported(study_model):
-    with pytest.raises(EquivalentError, match="nothing to export: k of 'all' along y: not"):
-        point_springs(answer(study_model.support_names, k=None), study_model)
-
-
-def test_a_structure_without_positions_is_refused(study_model):
-    flat = dataclasses.replace(study_model, contact_position=np.zeros((10, 3)))
-    with pytest.raises(EquivalentError, match="no positions in space"):
-        point_springs(answer(flat.support_names), flat)
-
-
-def test_a_direction_along_the_tube_has_no_spring(study_model):
-    with pytest.raises(EquivalentError, match="nothing to export: support left has no spring"):
-        point_springs(answer(study_model.support_names, "z"), study_model)
+@pytest.mark.parametrize(
+    ("asked", "changes", "words"),
+    [
+        ({"k": None}, {}, "nothing to export: k of 'all' along y: not"),
+        ({"direction": "z"}, {}, "nothing to export: support left has no spring"),  # along the tube
+        ({}, {"contact_position": np.zeros((10, 3))}, "no positions in space"),
+    ],
+)
+def test_what_has_no_spring_is_not_exported(study_model, asked, changes, words):
+    model = dataclasses.replace(study_model, **changes)
+    with pytest.raises(EquivalentError, match=words):
+        point_springs(answer(model.support_names, **asked), model)
 
 
 @pytest.mark.parametrize("form", READERS)
 def test_oblique_parallel_stops_act_along_their_normal(form, study_model):
     """Two stops at 30 degrees from x on every point: K n n^T, and nothing across them."""
     normal = np.array([math.cos(math.pi / 6.0), math.sin(math.pi / 6.0)])
-    points = np.repeat(np.arange(10), 2)
-    laws = study_model.contact_laws.with_columns(
-        land_point=points, land_normal=np.tile([normal, -normal], (10, 1))
-    )
+    points, normals = np.repeat(np.arange(10), 2), np.tile([normal, -normal], (10, 1))
+    laws = study_model.contact_laws.with_columns(land_point=points, land_normal=normals)
     model = dataclasses.replace(study_model, contact_laws=laws)
     springs = point_springs(answer(model.support_names, "normal"), model, "one")
     along = np.array([*normal, 0.0])
@@ -178,9 +152,8 @@ def test_oblique_parallel_stops_act_along_their_normal(form, study_model):
 
 def test_a_direction_that_is_not_driven_is_no_failure(study_model):
     driven = answer(study_model.support_names).groups[0]
-    still = dataclasses.replace(
-        driven, direction="x", k=Span(), c=Span(), reason_k=NOT_MOVED, reason_c=NOT_MOVED
-    )
+    nothing = {"k": Span(), "c": Span(), "reason_k": NOT_MOVED, "reason_c": NOT_MOVED}
+    still = dataclasses.replace(driven, direction="x", **nothing)
     both = dataclasses.replace(answer(study_model.support_names), groups=(driven, still))
     assert both.unresolved == []
     springs = point_springs(both, study_model, "one")

@@ -8,13 +8,7 @@ from evidence.validation.prediction.law_errors import error_rows, tube_rows
 from evidence.validation.prediction.laws import EquivalentLaw, fit_displacement_law, law_text
 from tests.conftest import ROOT
 from tests.support.one_mass import ALONG_X, one_mass
-from vibroimpact import (
-    EquivalentError,
-    build_model,
-    check_config,
-    estimate_equivalent,
-    load_config,
-)
+from vibroimpact import EquivalentError, build_model, check_config, estimate_equivalent, load_config
 from vibroimpact.config.yaml_file import read_yaml
 from vibroimpact.equivalent_support.displacement_law import (
     LAW_FILE,
@@ -84,11 +78,9 @@ def test_a_law_is_fitted_back_from_what_it_says(tube):
     given = DisplacementLaw(level, 1.5 * level / (1.5 + level), 0.3 / (1.0 + 0.1 * level))
     rows = []
     for load in np.geomspace(1.2, 15.0, 40):
-        k, c = given.at(tube, load, GAP)
-        rows += [
-            {"method": m, "load_rms_N": load, "gap_m": GAP, "k_median": k, "c_median": c}
-            for m in COMPARED
-        ]
+        names = ("load_rms_N", "gap_m", "k_median", "c_median")
+        row = dict(zip(names, (load, GAP, *given.at(tube, load, GAP)), strict=True))
+        rows += [row | {"method": method} for method in COMPARED]
     found = fit_displacement_law(rows, tube)
     for load in (2.0, 5.0, 10.0):
         assert found.at(tube, load, GAP) == pytest.approx(given.at(tube, load, GAP), rel=0.03)
@@ -123,21 +115,14 @@ def test_the_errors_of_a_tube_are_found_again(study_config):
     """
     tubes = read_yaml(ROOT / "config" / "validation" / "other_tubes.yaml")
     law, other = shipped_law().law, EquivalentLaw(np.array([0.1, 100.0]), np.ones(2), np.ones(2))
-    (found,) = tube_rows(
-        study_config, "more_damping", tubes["more_damping"], law, other, levels=(3.0,)
-    )
-    stored = next(
-        row
-        for row in read_table(LAW_FILE.with_name("displacement_law_errors.csv"))
-        if row["tube"] == "more_damping" and row["load_rms_N"] == found["load_rms_N"]
-    )
-    for names, tolerance in (
-        (("level", "k_law", "c_law"), 1e-4),
-        (("k_secant",), 0.06),
-        (("k_identified", "c_identified"), 0.2),
-    ):
-        for name in names:
-            assert found[name] == pytest.approx(stored[name], rel=tolerance)
+    name = "more_damping"
+    (found,) = tube_rows(study_config, name, tubes[name], law, other, levels=(3.0,))
+    rows = read_table(LAW_FILE.with_name("displacement_law_errors.csv"))
+    place = (name, found["load_rms_N"])
+    stored = next(row for row in rows if (row["tube"], row["load_rms_N"]) == place)
+    within = dict.fromkeys(("level", "k_law", "c_law"), 1e-4) | {"k_secant": 0.06}
+    for name, tolerance in (within | {"k_identified": 0.2, "c_identified": 0.2}).items():
+        assert found[name] == pytest.approx(stored[name], rel=tolerance)
 
 
 def test_a_law_is_read_as_it_was_written(tmp_path):

@@ -31,17 +31,11 @@ BROADBAND = {"point": "span_2", "band_Hz": [4.0, 50.0]}
 
 def table(values, direction="y"):
     """Rows of equivalent.csv with {group: (k, c)}, 0 as not resolved."""
+    case = {"gap_m": 3.0e-4, "load_rms_N": LOAD, "direction": direction}
     return [
-        {
-            "gap_m": 3.0e-4,
-            "load_rms_N": LOAD,
-            "group": group,
-            "direction": direction,
-            "k_N_per_m": k or np.nan,
-            "c_N_s_per_m": c or np.nan,
-            "secant_k_N_per_m": 0.5 * k,
-            "secant_c_N_s_per_m": c,
-        }
+        case
+        | {"group": group, "k_N_per_m": k or np.nan, "c_N_s_per_m": c or np.nan}
+        | {"secant_k_N_per_m": 0.5 * k, "secant_c_N_s_per_m": c}
         for group, (k, c) in values.items()
     ]
 
@@ -90,11 +84,10 @@ def test_equal_supports_respond_as_one_support_for_all(study_model):
     one = linear_response(study_model, k, c, LOAD, band, 49.0)
     for name in ("psd", "rms_stress"):
         ours, theirs = getattr(own, name), getattr(one, name)
-        moved = {place for place, value in theirs.items() if np.all(value > 0.0)}
+        moved = [place for place, value in theirs.items() if np.all(value > 0.0)]
         assert moved and ours.keys() == theirs.keys()
-        assert np.array([ours[place] for place in moved]) == pytest.approx(
-            np.array([theirs[place] for place in moved]), rel=1e-6
-        )
+        ours, theirs = (np.array([values[place] for place in moved]) for values in (ours, theirs))
+        assert ours == pytest.approx(theirs, rel=1e-6)
 
 
 def test_unequal_supports_are_predicted_by_their_own_values(tube):
@@ -123,8 +116,7 @@ def test_prediction_refuses_other_forces_and_groups(tube):
     config, model = tube
     with pytest.raises(ValueError, match="groups must be all"):
         one_for_all(config, model, [], [])
-    noise = config.model_copy(
-        update={"excitation": config.excitation.model_copy(update={"kind": "white_noise"})}
-    )
+    force = config.excitation.model_copy(update={"kind": "white_noise"})
+    noise = config.model_copy(update={"excitation": force})
     with pytest.raises(ValueError, match="band_limited, not white_noise"):
         supports_prediction_rows(noise, model, {}, [], [])

@@ -21,15 +21,11 @@ def with_jacobian(values):
 
 
 def test_rosenbrocks_valley_is_followed_to_its_end():
-    found = minimise(
-        lambda x: (
-            np.array([10.0 * (x[1] - x[0] ** 2), 1.0 - x[0]]),
-            np.array([[-20.0 * x[0], 10.0], [-1.0, 0.0]]),
-        ),
-        np.array([-1.2, 1.0]),
-        passes=200,
-        settled=1.0e-12,
-    )
+    def valley(x):
+        slope = np.array([[-20.0 * x[0], 10.0], [-1.0, 0.0]])
+        return np.array([10.0 * (x[1] - x[0] ** 2), 1.0 - x[0]]), slope
+
+    found = minimise(valley, np.array([-1.2, 1.0]), passes=200, settled=1.0e-12)
     assert found.values == pytest.approx([1.0, 1.0], abs=1.0e-6) and found.cost < 1.0e-12
 
 
@@ -63,10 +59,8 @@ def test_a_start_without_error_is_refused():
 
 
 def test_differences_of_a_failed_trial_are_zero():
-    slope = differences(
-        lambda x: None if x[1] > 0.0 else np.array([3.0 * x[0]]),
-        np.zeros(2),
-        np.zeros(1),
-        np.array([0.5, 0.5]),
-    )
+    def error(x):
+        return None if x[1] > 0.0 else np.array([3.0 * x[0]])
+
+    slope = differences(error, np.zeros(2), np.zeros(1), np.array([0.5, 0.5]))
     assert slope.tolist() == [[3.0, 0.0]]

@@ -36,14 +36,8 @@ def test_first_singular_vector_is_the_dominant_shape():
     shape /= np.linalg.norm(shape)
     frequency = np.arange(5.0, 30.0, 0.1)
     weak = 0.05 * generator.standard_normal((9, 6, frequency.size))
-    spectra = (
-        shape[:, None, None]
-        * (
-            generator.standard_normal((6, frequency.size))
-            + 1j * generator.standard_normal((6, frequency.size))
-        )
-        + weak
-    )
+    motion = np.tensordot([1.0, 1j], generator.standard_normal((2, 6, frequency.size)), 1)
+    spectra = shape[:, None, None] * motion + weak
     found = deflection_shape(spectra, frequency, (10.0, 20.0))
     inside = (frequency >= 10.0) & (frequency <= 20.0)
     values = np.linalg.svd(spectra[:, :, inside].reshape(9, -1), compute_uv=False)
@@ -56,17 +50,14 @@ def test_first_singular_vector_is_the_dominant_shape():
 @pytest.mark.parametrize("k, c", [(1.0e4, 31.0), (1.0e5, 62.0), (1.0e6, 1018.0), (4.0e6, 1.0e4)])
 def test_operating_shapes_give_the_support_stiffness(study_model, tube, k, c):
     frequency, ratio = frequency_of(first_pole(study_model, k, c))
-    line = frf(study_model, k, c, tube.at_line.frequency, study_model.line_shapes)
-    measured = deflection_shape(
-        line[:, None, :], tube.at_line.frequency, level_edges(frequency, ratio, 25.0)
+    bins, edges = tube.at_line.frequency, level_edges(frequency, ratio, 25.0)
+    line = frf(study_model, k, c, bins, study_model.line_shapes)
+    measured = deflection_shape(line[:, None, :], bins, edges)
+    match, sure = (
+        match_shape(measured, tube.at_line, tube.mode_shapes, tube.shape_members(ratio, error))
+        for error in (0.1 * ratio, 0.0)
     )
-    match = match_shape(
-        measured, tube.at_line, tube.mode_shapes, tube.shape_members(ratio, 0.1 * ratio)
-    )
-    assert match.k == pytest.approx(
-        k, rel=0.02
-    )  # the damping's uncertainty is taken out of k; without it:
-    sure = match_shape(measured, tube.at_line, tube.mode_shapes, tube.shape_members(ratio, 0.0))
+    assert match.k == pytest.approx(k, rel=0.02)  # the damping's uncertainty is taken out of k
     assert sure.k == pytest.approx(k, rel=1.0e-3) and sure.mac == pytest.approx(1.0, abs=1.0e-9)
     by_mode_shape = match.k_grid[np.argmax(match.mac_grid)]
     assert k != 4.0e6 or by_mode_shape > 1.08 * k
@@ -77,21 +68,14 @@ def test_operating_shapes_give_the_support_stiffness(study_model, tube, k, c):
 def test_broadband_correlation_returns_a_member_at_any_level(study_model, k, c):
     kernel = spectral_kernel("hann", 10.0)
     bins = np.arange(60, 991) / 10.0
-    response = LinearFamily(driven_modes(study_model), kernel.fine_index(bins) / 40.0).response(
-        study_model.sensor_shapes[:, [3]]
-    )
+    tubes = LinearFamily(driven_modes(study_model), kernel.fine_index(bins) / 40.0)
+    response = tubes.response(study_model.sensor_shapes[:, [3]])
     psd = kernel.smooth(response.psd(k, c)[0])
     grid = np.geomspace(1.0e3, 1.0e8, 16)
-    family = family_map(
-        response,
-        kernel,
-        grid,
-        np.outer(np.interp(grid, [1.0e3, 1.0e5, 1.0e8], [28.0, 62.0, 1.0e5]), (0.0, 1.0, 3.0)),
-    )
+    damping = np.interp(grid, [1.0e3, 1.0e5, 1.0e8], [28.0, 62.0, 1.0e5])
+    family = family_map(response, kernel, grid, np.outer(damping, (0.0, 1.0, 3.0)))
     for size in (1.0, 1.0e6):
-        fit = identify_broadband(
-            size * psd, response, kernel, family, lambda stiffness: -3.0, averages=18.0
-        )
+        fit = identify_broadband(size * psd, response, kernel, family, lambda stiffness: -3.0, 18.0)
         assert (fit.k, fit.c) == pytest.approx((k, c), rel=1.0e-5)
         assert fit.correlation == pytest.approx(1.0, abs=1.0e-8)
         np.testing.assert_allclose(fit.curve, size * psd, rtol=1.0e-4)

@@ -22,9 +22,8 @@ def test_amplitudes_come_back_and_the_transient_is_left_out():
     records[:PERIOD] += 100.0 * np.exp(-np.arange(PERIOD) / 50.0)
     level = level_lines("one", "fit", np.tile(force, 5), records[None], RATE, PERIOD, 1)
     assert level.periods == 4 and level.frequency[8] == pytest.approx(2.0)
-    assert level.force[[8, 20]] == pytest.approx([1.0 + 0.5j, -0.3j]) and level.response[
-        0, [8, 20]
-    ] == pytest.approx([0.2j, 1.5])
+    assert level.force[[8, 20]] == pytest.approx([1.0 + 0.5j, -0.3j])
+    assert level.response[0, [8, 20]] == pytest.approx([0.2j, 1.5])
     assert level.load_rms == pytest.approx(np.sqrt(2.0 * (1.25 + 0.09)))
     assert level.rms((1.0, 6.0)) == pytest.approx([np.sqrt(2.0 * (0.04 + 2.25))])
 
@@ -33,21 +32,13 @@ def test_noise_is_the_scatter_of_the_mean():
     generator = np.random.default_rng(1)
     count, size = 400, 0.3
     force = np.tile(signal({5: 1.0}), count)
-    level = level_lines(
-        "noisy",
-        "fit",
-        force,
-        (force + size * generator.standard_normal(force.size))[None],
-        RATE,
-        PERIOD,
-        0,
-    )
+    noisy = force + size * generator.standard_normal(force.size)
+    level = level_lines("noisy", "fit", force, noisy[None], RATE, PERIOD, 0)
     # A line of white noise has the variance size²/PERIOD, its mean over the periods a count-th of
     # it.
-    assert np.median(level.noise[0, 10:400]) == pytest.approx(
-        size / np.sqrt(PERIOD * count), rel=0.05
-    )
-    assert np.abs(level.response[0, 10:400]).mean() < 2.0 * size / np.sqrt(PERIOD * count)
+    expected = size / np.sqrt(PERIOD * count)
+    assert np.median(level.noise[0, 10:400]) == pytest.approx(expected, rel=0.05)
+    assert np.abs(level.response[0, 10:400]).mean() < 2.0 * expected
 
 
 @pytest.mark.parametrize(("period", "count"), [(8192, 3), (1000, 7), (512, 9)])

@@ -27,9 +27,8 @@ def model(**changes):
 
 
 def direction(along):
-    return SupportDirection(
-        "all", "n", (), np.zeros((0, 10)), np.arange(10), np.tile(along, (10, 1))
-    )
+    rows, along = np.arange(10), np.tile(along, (10, 1))
+    return SupportDirection("all", "n", (), np.zeros((0, 10)), rows, along)
 
 
 def moments(force, displacement, velocity):
@@ -98,12 +97,9 @@ def test_an_oblique_stop_has_the_stiffness_along_its_normal(motion):
 
 
 def test_one_sided_stops_and_offsets_are_not_symmetric():
-    one, two = (
-        ContactLaws.neutral(10).with_columns(
-            land_point=np.zeros(count, int), land_normal=np.array([[1.0, 0.0], [-1.0, 0.0]])[:count]
-        )
-        for count in (1, 2)
-    )
+    points, normals = np.zeros(2, int), np.array([[1.0, 0.0], [-1.0, 0.0]])
+    two = ContactLaws.neutral(10).with_columns(land_point=points, land_normal=normals)
+    one = ContactLaws.neutral(10).with_columns(land_point=points[:1], land_normal=normals[:1])
     assert symmetric(model(), 1e-3) and symmetric(model(contact_laws=two), 1e-3)
     assert not symmetric(model(contact_laws=one), 1e-3)
     assert not symmetric(model(centre_offset=np.full((10, 2), 1e-5)), 1e-3)

@@ -39,11 +39,9 @@ def test_what_the_residual_does_not_see_is_unknown():
 def test_with_one_support_the_pole_fixes_it_from_anywhere(study_model):
     k, c = 1.0e5, 62.0525
     pole = first_pole(study_model, k, c)
-    found = step_to_pole(
-        tube(study_model, "all"),
-        FoundSupports(np.array([2.0e4]), np.array([5.0]), np.diag([1.0, 100.0**2])),
-        (*frequency_of(pole), np.zeros((2, 2))),
-    )
+    start = FoundSupports(np.array([2.0e4]), np.array([5.0]), np.diag([1.0, 100.0**2]))
+    wanted = (*frequency_of(pole), np.zeros((2, 2)))
+    found = step_to_pole(tube(study_model, "all"), start, wanted)
     assert (found.k[0], found.c[0]) == pytest.approx((k, c), rel=1e-6)
     assert np.abs(found.covariance).max() < 1e-9
 

@@ -1,4 +1,5 @@
-"""The command `vibroimpact equivalent`: its arguments, its output and its files.
+"""The commands `vibroimpact equivalent` and `vibroimpact contact`: k and c, and the contact of the
+supports for another program; their arguments, output and files.
 
 The library is imported when the command runs, so that `--help` answers at once.
 """
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
 
 LARGEST = 1e20
 FORMATS = ("nastran", "code_aster", "abaqus", "opensees", "csv", "json")
+CONTACT_FORMATS = ("abaqus", "opensees", "code_aster")
 
 
 def _positive(text: str) -> float:
@@ -105,10 +107,13 @@ def add_file_arguments(parser: argparse.ArgumentParser, about: str = "") -> None
 
 def run(options: argparse.Namespace) -> int:
     """Run the command. Return 1 if there is no answer, or a k or c has no value and no bound."""
+    import json
+
     from vibroimpact.config.problems import ConfigError
     from vibroimpact.io.records import RecordError
 
     from .answer import EquivalentError
+    from .answer_text import as_csv, as_plain, as_text
 
     try:
         answer, model = _answer(options)
@@ -117,7 +122,10 @@ def run(options: argparse.Namespace) -> int:
     except (EquivalentError, ConfigError, RecordError, ValueError) as error:
         print(error, file=sys.stderr)
         return 1
-    print(_printed(options, answer))
+    if options.json:
+        print(json.dumps(as_plain(answer), indent=2, ensure_ascii=False))
+    else:
+        print(as_csv(answer) if options.csv else as_text(answer))
     missing = [*answer.unresolved, *(line for line in left_out if line not in answer.unresolved)]
     for sentence in missing:
         print(sentence, file=sys.stderr)
@@ -159,17 +167,6 @@ def _answer(options: argparse.Namespace) -> "tuple[Answer, ModalModel]":
     return equivalent(options.study, options.load, options.gap, model), model
 
 
-def _printed(options: argparse.Namespace, answer: "Answer") -> str:
-    """Return the text that the command prints."""
-    import json
-
-    from .answer_text import as_csv, as_plain, as_text
-
-    if options.json:
-        return json.dumps(as_plain(answer), indent=2, ensure_ascii=False)
-    return as_csv(answer) if options.csv else as_text(answer)
-
-
 def _write_export(
     options: argparse.Namespace, answer: "Answer", model: "ModalModel"
 ) -> tuple[str, ...]:
@@ -188,3 +185,50 @@ def _write_export(
     except OSError as error:
         raise EquivalentError(f"{path}: cannot be written ({error.strerror})") from error
     return springs.left_out
+
+
+def add_contact_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command `contact`."""
+    parser.add_argument("config", metavar="CONFIG", help="configuration of the structure")
+    parser.add_argument(
+        "--gap", type=float, required=True, metavar="M", help="radial gap of the case in m"
+    )
+    parser.add_argument(
+        "--export",
+        nargs=2,
+        required=True,
+        metavar=("FORMAT", "FILE"),
+        help=f"format and path of the file; FORMAT: {', '.join(CONTACT_FORMATS)}",
+    )
+    add_file_arguments(parser)
+    parser.set_defaults(command=run_contact)
+
+
+def run_contact(options: argparse.Namespace) -> int:
+    """Run the command `contact`. Return 1 if nothing was written, or something was left out."""
+    from vibroimpact.config.problems import ConfigError
+    from vibroimpact.config.reading import load_config
+    from vibroimpact.io.records import RecordError, write_text
+    from vibroimpact.reduction.reduced_model import build_model
+
+    from .answer import EquivalentError
+    from .contact_points import contact_set
+    from .export_formats.registry import contacts_text
+
+    form, path = options.export
+    try:
+        if not 0.0 < options.gap < 1.0:
+            raise EquivalentError(
+                f"--gap {options.gap:g} must be above 0 and below 1: give it in m"
+            )
+        config = load_config(options.config)
+        contacts = contact_set(config, build_model(config, motion_only=True), options.gap)
+        content, left_out = contacts_text(contacts, form, options.unit, options.first_number)
+        write_text(content, path)
+    except (EquivalentError, ConfigError, RecordError, OSError) as error:
+        print(error, file=sys.stderr)
+        return 1
+    for sentence in left_out:
+        print(f"left out: {sentence}", file=sys.stderr)
+    print(f"{path}: contact of {len(contacts.points)} points")
+    return 1 if left_out else 0

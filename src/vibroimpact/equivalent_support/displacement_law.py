@@ -99,15 +99,9 @@ def held_tube(model: ModalModel, band_Hz: Sequence[float]) -> HeldTube:
 
 def plate_shapes(model: ModalModel) -> np.ndarray:
     """Return (mode, support): mean displacement of each support's points along driven_direction."""
-    along = model.contact_shapes[:, :, driven_direction(model)]
-    return np.stack(
-        [
-            along[:, model.support_of_point == number]
-            @ model.contact_weight[model.support_of_point == number]
-            for number in range(len(model.support_names))
-        ],
-        axis=1,
-    )
+    along, weight = model.contact_shapes[:, :, driven_direction(model)], model.contact_weight
+    own = [model.support_of_point == number for number in range(len(model.support_names))]
+    return np.stack([along[:, points] @ weight[points] for points in own], axis=1)
 
 
 @dataclass(frozen=True)
@@ -154,12 +148,9 @@ class ShippedLaw:
         """
         regions = self.errors[:-1]
         middles = [0.5 * np.log(row["level_from"] * row["level_to"]) for row in regions]
-        error = {
-            name: float(
-                np.exp(np.interp(np.log(level), middles, [np.log(row[name]) for row in regions]))
-            )
-            for name in RATIOS
-        }
+        logs = {name: [np.log(row[name]) for row in regions] for name in RATIOS}
+        x = np.log(level)
+        error = {name: float(np.exp(np.interp(x, middles, own))) for name, own in logs.items()}
         for name in ("k", "c"):
             error[f"{name}_low"] = min(error[f"{name}_low"], 1.0)
             error[f"{name}_high"] = max(error[f"{name}_high"], 1.0)

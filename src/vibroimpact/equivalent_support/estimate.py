@@ -75,15 +75,12 @@ def _require_inside(shipped: ShippedLaw, level: float, load_rms_N: float) -> Non
     if law.inside(level):
         return
     low, high = (load_rms_N / level * end for end in (law.level[0], law.level[-1]))
+    below = level < law.level[0]
+    hint = "below, the tube hardly touches its supports" if below else "run the study"
     raise EquivalentError(
         f"without supports the tube would move {level:.3g} gaps RMS at its plates; the law was"
         f" fitted from {law.level[0]:.3g} to {law.level[-1]:.3g}, here {low:.3g} to {high:.3g} N"
-        " RMS at this gap. Nothing is extrapolated: "
-        + (
-            "below, the tube hardly touches its supports"
-            if level < law.level[0]
-            else "run the study"
-        )
+        f" RMS at this gap. Nothing is extrapolated: {hint}"
     )
 
 

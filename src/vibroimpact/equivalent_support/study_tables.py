@@ -9,11 +9,7 @@ from vibroimpact.config.reading import Config
 from vibroimpact.config.stage_keys import answer_digest
 from vibroimpact.config.yaml_file import read_yaml
 from vibroimpact.io.records import RecordError, read_table
-from vibroimpact.study.equivalent_table import (
-    DIGEST_COLUMN,
-    EQUIVALENT_COLUMNS,
-    equivalent_rows,
-)
+from vibroimpact.study.equivalent_table import DIGEST_COLUMN, EQUIVALENT_COLUMNS, equivalent_rows
 from vibroimpact.study.own_results import other_configuration
 from vibroimpact.study.run_files import CONFIG_FILE
 

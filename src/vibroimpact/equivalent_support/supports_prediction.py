@@ -239,12 +239,8 @@ def _compared(
     for support in supports:
         section = f"{support}_middle"
         if section in linear.rms_stress:
-            values = [seed.rms_stress[section] for seed in seeds]
-            rows.append(
-                compared_row(
-                    "RMS bending stress", support, "Pa", linear.rms_stress[section], values
-                )
-            )
+            ours, *theirs = (response.rms_stress[section] for response in (linear, *seeds))
+            rows.append(compared_row("RMS bending stress", support, "Pa", ours, theirs))
     return rows
 
 

@@ -9,6 +9,7 @@ c from record to record is twice as large (40 against 20 % on the linear tube).
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -23,18 +24,9 @@ NEEDS_FORCE = "the force is not known, and spectra over a band depend on it"
 STEPS = 40  # at most, of the search
 
 
-@dataclass(frozen=True)
-class FamilyMap:
-    """Spectra of the family on a coarse grid, for the global search.
-
-    k: (k,) N/m.
-    c: (k, damping) N s/m.
-    vectors: (k, damping, bin), amplitude spectral densities of unit length.
-    """
-
-    k: np.ndarray
-    c: np.ndarray
-    vectors: np.ndarray
+# Spectra of the family on a coarse grid, for the global search: k (k,) in N/m, c (k, damping) in
+# N s/m, and amplitude spectral densities (k, damping, bin) of unit length.
+FamilyMap = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -71,7 +63,7 @@ def family_map(
             for stiffness, row in zip(k, c, strict=True)
         ]
     )
-    return FamilyMap(k, c, vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
+    return k, c, vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
 
 
 def identify_broadband(
@@ -97,11 +89,11 @@ def identify_broadband(
     """
     target = psd**EXPONENT
     target = target / np.linalg.norm(target)
-    correlations = family.vectors @ target
+    all_k, all_c, vectors = family
+    correlations = vectors @ target
     row, column = np.unravel_index(np.argmax(correlations), correlations.shape)
-    found = _maximise_correlation(
-        target, response, kernel, family.k[row], family.c[row, column], lowest_stable_damping
-    )
+    linearise = partial(_linearise, target, response, kernel)
+    found = _maximise_correlation(linearise, all_k[row], all_c[row, column], lowest_stable_damping)
     if found is None:
         return None
     k, c, (residual, jacobian, member, amplitude) = found
@@ -126,18 +118,13 @@ def identify_broadband(
 
 
 def _maximise_correlation(
-    target: np.ndarray,
-    response: FamilyResponse,
-    kernel: SpectralKernel,
-    k: float,
-    c: float,
-    lowest_stable_damping: Callable[[float], float],
+    linearise: Callable, k: float, c: float, lowest_stable_damping: Callable[[float], float]
 ) -> tuple | None:
     """Return (k, c, linearisation) of the largest correlation near a start, or None.
 
     None means that k leaves any sensible range.
     """
-    state, damping = _linearise(target, response, kernel, k, c), 1.0e-3
+    state, damping = linearise(k, c), 1.0e-3
     for _ in range(STEPS):
         residual, jacobian = state[:2]
         normal = jacobian @ jacobian.T
@@ -147,7 +134,7 @@ def _maximise_correlation(
         next_c = max(c + change[1], lowest_stable_damping(next_k))
         if not 1.0e-3 < next_k < 1.0e12:
             return None
-        trial = _linearise(target, response, kernel, next_k, next_c)
+        trial = linearise(next_k, next_c)
         if trial[0] @ trial[0] <= residual @ residual:
             settled = abs(change[0]) < 1.0e-6 and abs(next_c - c) < 1.0e-5 * (abs(c) + 1.0)
             k, c, state, damping = next_k, next_c, trial, 0.2 * damping

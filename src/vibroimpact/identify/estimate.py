@@ -78,8 +78,8 @@ def unresolved(
     method: str, note: str, frequency: float = np.nan, damping_ratio: float = np.nan
 ) -> Estimate:
     """Return an unresolved Estimate, with the pole it may have."""
-    nothing = Estimate(method, np.nan, np.nan, np.nan, np.nan, frequency, damping_ratio)
-    return replace(nothing, quality="unresolved", note=note)
+    nothing = np.nan, np.nan, np.nan, np.nan
+    return Estimate(method, *nothing, frequency, damping_ratio, "unresolved", note)
 
 
 def grade(

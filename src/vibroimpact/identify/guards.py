@@ -101,17 +101,9 @@ def _without_value(estimate: Estimate, reason: str) -> Estimate:
     """Return the estimate flagged and without k and c, or as it is for an empty reason."""
     if not reason:
         return estimate
-    return replace(
-        estimate,
-        k=np.nan,
-        k_standard_error=np.nan,
-        c=np.nan,
-        c_standard_error=np.nan,
-        k_bound=np.nan,
-        quality="unresolved",
-        note=joined(reason, estimate.note),
-        flag=joined(estimate.flag, reason),
-    )
+    note, flag = joined(reason, estimate.note), joined(estimate.flag, reason)
+    lost = replace(estimate, k=np.nan, k_standard_error=np.nan, k_bound=np.nan, flag=flag)
+    return replace(lost, c=np.nan, c_standard_error=np.nan, quality="unresolved", note=note)
 
 
 def few_averages(averages: float) -> str:

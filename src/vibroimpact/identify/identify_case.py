@@ -96,7 +96,7 @@ def _identify_all_alike(
     more: dict[str, Any] = {}
     if match is not None:
         more |= {"mac_k": match.k_grid, "mac": match.mac_grid, "best_mac": match.mac}
-    more |= {"map_k": tube.broadband_map.k, "map_c": tube.broadband_map.c}
+    more["map_k"], more["map_c"], _ = tube.broadband_map
     if broad is not None:
         more |= {
             "correlation": broad.correlation_map,

@@ -12,7 +12,6 @@ import numpy as np
 import xarray as xr
 
 from vibroimpact.config.stage_settings import ConfigPart
-from vibroimpact.identify.linear.supported_structure import Observed
 
 from .broadband import NEEDS_FORCE
 from .case_estimates import LOWEST_CORRELATION, LOWEST_MAC, ONE_SENSOR, with_doubts, without_damping
@@ -22,8 +21,8 @@ from .observed_case import ObservedCase, or_none
 from .operational_pole import OperationalPole
 from .peak import PeakFit
 from .pole_step import step_to_pole
-from .support_fit import Start, SupportSearch, inverse_information
-from .supports_by_shapes import BlockShapes, ShapeComparison, ShapesFit, block_shapes
+from .support_fit import SupportSearch, inverse_information
+from .supports_by_shapes import ShapeComparison, ShapesFit, block_shapes
 from .supports_by_spectra import SpectraComparison, SpectraFit
 from .supports_tube import SupportsTube
 
@@ -68,7 +67,7 @@ class SupportsCase(ObservedCase):
         coarse = partial(comparison.coarse_cost, bins)
         starts = self.search.coarse_starts(coarse, len(tube.directions))
         if shapes is not None:
-            starts.append(Start(np.log(shapes.values.k), SHAPE_LOSS))
+            starts.append((np.log(shapes.values.k), SHAPE_LOSS))
         found = comparison.fit(self.search, starts, tube.lowest_stable_damping, self.averages)
         curve = np.full((len(moving), values.shape[-1]), np.nan)
         curve[moving] = found.curve
@@ -82,16 +81,11 @@ class SupportsCase(ObservedCase):
         measured = block_shapes(self.line, self.line_frequency, layout.kernel)
         fine, bins = tube.at_line
         at_bins = replace(measured, weights=measured.weights[:, layout.kernel.bins])
-
-        def compared(
-            observed: Observed, shapes: BlockShapes, frequency: np.ndarray
-        ) -> ShapeComparison:
-            force = layout.excited(frequency)
-            return ShapeComparison(tube.structure, observed, shapes, self.search, force)
-
-        coarse = compared(bins, at_bins, self.line_frequency)
+        force = layout.excited(self.line_frequency)
+        coarse = ShapeComparison(tube.structure, bins, at_bins, self.search, force)
         starts = self.search.coarse_starts(coarse.cost, len(tube.directions), (SHAPE_LOSS,))
-        comparison = compared(fine, measured, tube.structure.frequency[fine.part])
+        force = layout.excited(tube.structure.frequency[fine.part])
+        comparison = ShapeComparison(tube.structure, fine, measured, self.search, force)
         return comparison.fit(starts, tube.lowest_stable_damping)
 
 

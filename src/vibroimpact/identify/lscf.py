@@ -39,27 +39,19 @@ class NormalEquations:
             self._cross.append((powers.conj() @ weighted.T).real)
             self._denominator += (weighted.conj() @ weighted.T).real
 
-    def reduced(self, order: int) -> np.ndarray:
-        """Return the matrix (coefficient, coefficient) for A, with every B_o eliminated.
-
-        There are (order + 1) * references coefficients.
-        """
-        rows, columns = order + 1, (order + 1) * self.references
-        cross = np.concatenate([part[:rows, :columns] for part in self._cross], axis=1)
-        solved = np.linalg.solve(self._numerator[:rows, :rows], cross)
-        matrix = self._denominator[:columns, :columns].copy()
-        for index in range(len(self._cross)):
-            part = slice(index * columns, (index + 1) * columns)
-            matrix -= cross[:, part].T @ solved[:, part]
-        return matrix
-
     def poles(self, order: int) -> tuple[np.ndarray, np.ndarray]:
         """Return (poles (pole,) in rad/s, participation (pole, reference)) of one order.
 
         Poles have a positive imaginary part. The highest coefficient of A is fixed at one, which
         keeps physical poles stable and makes spurious ones decay fast.
         """
-        matrix = self.reduced(order)
+        rows, columns = order + 1, (order + 1) * self.references
+        cross = np.concatenate([part[:rows, :columns] for part in self._cross], axis=1)
+        solved = np.linalg.solve(self._numerator[:rows, :rows], cross)
+        matrix = self._denominator[:columns, :columns].copy()  # for A: every B_o is eliminated
+        for index in range(len(self._cross)):
+            part = slice(index * columns, (index + 1) * columns)
+            matrix -= cross[:, part].T @ solved[:, part]
         inner = order * self.references
         companion = np.zeros((inner, inner))
         companion[: inner - self.references, self.references :] = np.eye(inner - self.references)

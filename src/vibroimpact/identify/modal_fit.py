@@ -107,10 +107,8 @@ def with_residues(
     response: (channel, line) per unit force.
     weight: (line,).
     """
-    columns, factors = (
-        modes.receptance(frequency).T * weight[:, None],
-        modes.sensor_factors(frequency),
-    )
+    columns = modes.receptance(frequency).T * weight[:, None]
+    factors = modes.sensor_factors(frequency)
     products = np.empty((modes.modes, len(response)))
     for channel, values in enumerate(response):
         matrix, wanted = columns * factors[channel][:, None], values * weight

@@ -10,7 +10,6 @@ three times as much.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -119,19 +118,17 @@ def fit_peak(
     """
     theta = np.array([np.nan, np.log(start[0]), np.log(min(0.5 * start[1] / start[0], 0.2))])
     passes = 1 if other_modes is None else OTHER_MODES_PASSES
-    fit: Any = None
     for number in range(passes):
         factor = None if other_modes is None else other_modes(*np.exp(theta[1:]))
         tolerance = SETTLED if number == passes - 1 else ROUGHLY
         fit = _score(frequency, psd, kernel, level, theta, factor, tolerance)
         if fit is None:
             return None
-        theta = fit.theta
-    weighted = fit.slopes * fit.weights
-    inverse = np.linalg.inv(weighted @ fit.slopes.T)
+        theta, bins, curve, slopes, weighted = fit
+    inverse = np.linalg.inv(weighted @ slopes.T)
     covariance = (inverse @ correlated_sum(weighted, kernel) @ inverse * (2.0 / averages))[1:, 1:]
     if segments is not None:
-        pulls = (segments[:, fit.bins] - psd[fit.bins]) / fit.curve @ weighted.T @ inverse
+        pulls = (segments[:, bins] - psd[bins]) / curve @ weighted.T @ inverse
         covariance = widened(covariance, pulls[:, 1:], averages)
     frequency_Hz, damping_ratio = np.exp(theta[1:])
     edges = level_edges(frequency_Hz, damping_ratio, level)
@@ -143,26 +140,9 @@ def fit_peak(
         damping_ratio=float(damping_ratio),
         covariance=covariance * np.outer(scale, scale),
         edges_Hz=edges,
-        bins=fit.bins,
-        curve=fit.curve,
+        bins=bins,
+        curve=curve,
     )
-
-
-@dataclass(frozen=True)
-class _Score:
-    """State of the fit.
-
-    theta: (ln A, ln frequency in Hz, ln damping ratio).
-    bins: slice of the bins used.
-    curve, weights: (bin,).
-    slopes: (3, bin).
-    """
-
-    theta: np.ndarray
-    bins: slice
-    curve: np.ndarray
-    slopes: np.ndarray
-    weights: np.ndarray
 
 
 def _score(
@@ -173,8 +153,11 @@ def _score(
     theta: np.ndarray,
     factor: Callable | None,
     tolerance: float,
-) -> _Score | None:
-    """Return the _Score at which the quasi-likelihood of the bins is stationary, or None.
+) -> tuple[np.ndarray, slice, np.ndarray, np.ndarray, np.ndarray] | None:
+    """Return where the quasi-likelihood of the bins is stationary, or None.
+
+    It is (theta: ln A, ln frequency in Hz, ln damping ratio; slice of the bins used; curve (bin,);
+    slopes (3, bin); slopes times weights).
 
     The bins are gamma distributed about the curve. Fisher scoring solves
     sum of weight (estimate/curve - 1) slope = 0. Bins and weights follow the curve, not the noise.
@@ -196,14 +179,14 @@ def _score(
         change = np.linalg.solve(information, weighted @ (psd[bins] / curve - 1.0))
         largest = max(abs(change[1]) * 20.0, abs(change[2]))
         if largest < tolerance:
-            return _Score(theta, bins, curve, slopes, weights)
+            return theta, bins, curve, slopes, weighted
         # The weights follow the curve. If this makes the steps oscillate, half steps converge.
         theta = theta + change * min(1.0 if step < FULL_STEPS else 0.5, 0.5 / largest)
         if not np.all(np.isfinite(theta)):
             return None
         if not frequency[0] < np.exp(theta[1]) < frequency[-1] or not low < theta[2] < high:
             return None  # the pole lies outside the spectrum, or is no damped resonance
-    return _Score(theta, bins, curve, slopes, weights) if largest < ROUGHLY else None
+    return (theta, bins, curve, slopes, weighted) if largest < ROUGHLY else None
 
 
 def _bins(frequency: np.ndarray, theta: np.ndarray) -> slice:
@@ -219,15 +202,6 @@ def _bins(frequency: np.ndarray, theta: np.ndarray) -> slice:
     )
 
 
-def _weights(relative: np.ndarray, level: float) -> np.ndarray:
-    """Return the weights (bin,) of bins at a height relative to the peak.
-
-    They are 1 above 1/level and fall smoothly to 0 at 1/FARTHEST. Smoothly, because the fit's own
-    curve sets them: a bin that enters with a jump can keep the iteration from converging.
-    """
-    return np.minimum(1.0, level * relative) * np.clip(1.5 - 1.5 / (FARTHEST * relative), 0.0, 1.0)
-
-
 def _curve(
     frequency: np.ndarray,
     theta: np.ndarray,
@@ -237,6 +211,10 @@ def _curve(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return (expected PSD for A = 1, logarithmic slopes (3, bin), weights (bin,)).
 
+    The weights are 1 above 1/level of the peak and fall smoothly to 0 at 1/FARTHEST. Smoothly,
+    because the fit's own curve sets them: a bin that enters with a jump can keep the iteration from
+    converging.
+
     frequency: (bin,) Hz, contiguous bins.
     """
     index = kernel.fine_index(frequency)
@@ -245,7 +223,9 @@ def _curve(
         curves = curves * factor(index)
     model, by_frequency, by_ratio = kernel.smooth(curves)
     slopes = np.array([np.ones(model.size), by_frequency / model, by_ratio / model])
-    return model, slopes, _weights(model / model.max(), level)
+    relative = model / model.max()
+    fall = np.clip(1.5 - 1.5 / (FARTHEST * relative), 0.0, 1.0)
+    return model, slopes, np.minimum(1.0, level * relative) * fall
 
 
 def resonance(frequency: np.ndarray, ln_frequency: float, ln_ratio: float) -> np.ndarray:

@@ -23,13 +23,8 @@ Evaluate = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 LowestDamping = Callable[[np.ndarray], np.ndarray]
 
-
-@dataclass(frozen=True, eq=False)
-class Start:
-    """The start of a search: ln k (direction,) and one loss factor omega c / k at the main peak."""
-
-    log_k: np.ndarray
-    loss: float
+# The start of a search: ln k (direction,) and one loss factor omega c / k at the main peak.
+Start = tuple[np.ndarray, float]
 
 
 @dataclass(frozen=True)
@@ -104,7 +99,7 @@ class SupportSearch:
                 k = np.exp(log_k)
                 return cost(k, loss * k / self.omega)
 
-            starts.append(Start(self._swept(at_loss, directions), loss))
+            starts.append((self._swept(at_loss, directions), loss))
         return starts
 
     def _swept(self, cost: Callable[[np.ndarray], float], directions: int) -> np.ndarray:
@@ -160,7 +155,8 @@ class SupportSearch:
         """
         from scipy.optimize import least_squares  # half a second to import
 
-        log_k, count = start.log_k, len(start.log_k)
+        log_k, loss = start
+        count = len(log_k)
         low, high = np.log(self.stiffness_range)
         # The damping is searched in units of k / omega at the start, so that all are near 1.
         unit = np.exp(log_k) / self.omega
@@ -184,9 +180,7 @@ class SupportSearch:
             return state["slope"]
 
         margin = 1.0e-6 * (high - low)
-        values = np.concatenate(
-            [np.clip(log_k, low + margin, high - margin), np.full(count, start.loss)]
-        )
+        values = np.concatenate([np.clip(log_k, low + margin, high - margin), np.full(count, loss)])
         found = least_squares(
             error,
             np.clip(values, bounds[0] + 1.0e-9, bounds[1]),

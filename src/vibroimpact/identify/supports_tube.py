@@ -71,7 +71,8 @@ class SupportsTube:
         structure, count = self.structure, len(self.directions)
         omega, shapes = structure.undamped_modes(k)
         seen = omega < 2.0 * np.pi * self.layout.frequency[-1]
-        moved = structure.support_motion(shapes[:, seen])
+        square = (structure.contact.T @ shapes[:, seen]) ** 2
+        moved = np.array([square[structure.owner == each].sum(axis=0) for each in range(count)])
         damped = structure.damping @ shapes[:, seen] ** 2
         bearable = damped / np.maximum(moved * count, np.finfo(float).tiny)
         return -STABLE_FRACTION * bearable.min(axis=1)

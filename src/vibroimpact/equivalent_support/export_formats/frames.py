@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..answer import EquivalentError
 from ..contact_points import ContactSet
 from ..springs import SpringSet
 
@@ -32,13 +31,6 @@ UNIT_SYSTEMS = {
     "m": UnitSystem("m, N, kg, s", 1.0, 1.0, 1.0),
     "mm": UnitSystem("mm, N, t, s", 1.0e3, 1.0e-3, 1.0e-3),
 }
-
-
-def unit_system(name: str) -> UnitSystem:
-    """Return a system by the name of its length. Raises EquivalentError for another name."""
-    if name not in UNIT_SYSTEMS:
-        raise EquivalentError(f"unit '{name}' is none of {', '.join(UNIT_SYSTEMS)}")
-    return UNIT_SYSTEMS[name]
 
 
 def head(content: SpringSet | ContactSet, unit: UnitSystem, mark: str, use: str) -> list[str]:

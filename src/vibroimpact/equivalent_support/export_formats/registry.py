@@ -2,13 +2,15 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import TypeVar
 
 from ..answer import EquivalentError
 from ..contact_points import ContactSet
-from ..springs import PointSpring, SpringSet, shared
+from ..springs import SpringSet, shared
 from . import abaqus, code_aster, nastran, opensees, tables
-from .frames import FIRST_NUMBER, UnitSystem, plain_name, unit_system
+from .frames import FIRST_NUMBER, UNIT_SYSTEMS, UnitSystem, plain_name
+
+Named = TypeVar("Named")
 
 SPRINGS: dict[str, Callable[[SpringSet, UnitSystem, int], str]] = {
     "nastran": nastran.springs_text,
@@ -26,10 +28,11 @@ CONTACTS: dict[str, tuple[Callable[[ContactSet, UnitSystem, int], str], tuple[st
 }
 
 
-def _require_known(form: str, known: Mapping[str, Any]) -> None:
-    """Raise EquivalentError for a format that is not known."""
-    if form not in known:
-        raise EquivalentError(f"format '{form}' is none of {', '.join(known)}")
+def named(what: str, name: str, known: Mapping[str, Named]) -> Named:
+    """Return what has a name among those known. Raises EquivalentError for another name."""
+    if name not in known:
+        raise EquivalentError(f"{what} '{name}' is none of {', '.join(known)}")
+    return known[name]
 
 
 def springs_text(
@@ -43,7 +46,7 @@ def springs_text(
     Raises EquivalentError for another format or unit, and if two supports have the same name in the
     letters of a format.
     """
-    _require_known(form, SPRINGS)
+    write = named("format", form, SPRINGS)
     names = [plain_name(spring.name).lower() for spring in springs.springs]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
@@ -51,19 +54,12 @@ def springs_text(
             f"two points are both called {twice[0]} in letters, digits and underscores: rename a"
             " support"
         )
-    system = unit_system(unit)
-    own = tuple(_in_unit(spring, system) for spring in springs.springs)
-    return SPRINGS[form](replace(springs, springs=own), system, first_number)
-
-
-def _in_unit(spring: PointSpring, unit: UnitSystem) -> PointSpring:
-    """Return a spring whose position, k and c are in a system of units."""
-    return replace(
-        spring,
-        position=unit.length * spring.position,
-        k=shared(spring.k, unit.stiffness),
-        c=shared(spring.c, unit.damping),
-    )
+    system = named("unit", unit, UNIT_SYSTEMS)
+    own = []
+    for spring in springs.springs:
+        k, c = shared(spring.k, system.stiffness), shared(spring.c, system.damping)
+        own.append(replace(spring, position=system.length * spring.position, k=k, c=c))
+    return write(replace(springs, springs=tuple(own)), system, first_number)
 
 
 def contacts_text(
@@ -75,12 +71,11 @@ def contacts_text(
 
     Raises EquivalentError for another format or unit, and for holes that the format lacks.
     """
-    _require_known(form, CONTACTS)
-    write, lacking = CONTACTS[form]
+    write, lacking = named("format", form, CONTACTS)
     left_out = tuple(
         f"{law} of the contact, which the export for {form} does not have"
         for law in lacking
         if any(getattr(point, law) > 0.0 for point in contacts.points)
     )
     own = replace(contacts, left_out=left_out)
-    return write(own, unit_system(unit), first_number), left_out
+    return write(own, named("unit", unit, UNIT_SYSTEMS), first_number), left_out

@@ -30,10 +30,9 @@ from vibroimpact.study.cases import Case
 from vibroimpact.study.equivalent_table import DIGEST_COLUMN, equivalent_rows
 from vibroimpact.study.method_agreement import consistency_rows, summary_rows
 
-from .forces import KnownForce
-from .sensors import MeasuredTube, measured_tube
 from .settings import measured_settings, with_grid
 from .spectra import displacements, measured_spectra
+from .tube import KnownForce, MeasuredTube, measured_tube
 from .usable import identification_problems, signal_problems
 
 Rows = list[dict[str, Any]]

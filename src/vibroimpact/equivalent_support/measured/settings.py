@@ -15,7 +15,7 @@ from vibroimpact.io.units import TIME_DERIVATIVES
 from vibroimpact.reduction.modal_model import ModalModel
 from vibroimpact.study.cases import Case
 
-from .sensors import MeasuredTube
+from .tube import MeasuredTube
 
 HELD = 1.0e9  # N/m: a tube that its supports hold
 # References of LSCF if the model names none that was measured. More make it less stable at the low

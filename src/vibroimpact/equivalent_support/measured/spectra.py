@@ -10,9 +10,8 @@ from vibroimpact.io.units import TIME_DERIVATIVES
 from vibroimpact.study.case_spectra import case_spectra
 from vibroimpact.study.cases import Case
 
-from .forces import relative_psd
-from .sensors import MeasuredTube
 from .settings import lowest_read_Hz
+from .tube import MeasuredTube, relative_psd
 
 TIME_CONSTANTS = 5.0  # of the first mode, left out of a record that begins at rest
 

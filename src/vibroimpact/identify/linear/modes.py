@@ -24,9 +24,8 @@ def contact_matrix(model: ModalModel) -> np.ndarray:
 
     There is one row per contact point and direction, and W = B B^T.
     """
-    return (model.contact_shapes * np.sqrt(model.contact_weight)[None, :, None]).reshape(
-        model.modes, -1
-    )
+    scaled = model.contact_shapes * np.sqrt(model.contact_weight)[None, :, None]
+    return scaled.reshape(model.modes, -1)
 
 
 def transfer(receptance: np.ndarray, left: np.ndarray, right: np.ndarray) -> np.ndarray:

@@ -146,16 +146,6 @@ class SupportedStructure:
             found[index] = np.linalg.eigvalsh(compliance)[-1]
         return found
 
-    def support_motion(self, shapes: np.ndarray) -> np.ndarray:
-        """Return (direction, shape) 1/kg, the square of the motion at each direction's contacts.
-
-        shapes: (mode, shape).
-        """
-        square = (self.contact.T @ shapes) ** 2
-        return np.array(
-            [square[self.owner == index].sum(axis=0) for index in range(len(self.directions))]
-        )
-
     def pole(self, k: np.ndarray, c: np.ndarray, near: complex) -> tuple[complex, np.ndarray]:
         """Return (the pole nearest to `near` in rad/s, its derivatives (direction,) by k).
 
@@ -173,6 +163,5 @@ class SupportedStructure:
         # The matrices are symmetric: the left vector is the right one, not conjugated.
         scale = shape @ (2.0 * pole * shape + damping @ shape)
         moved = (self.contact.T @ shape) ** 2
-        return complex(pole), -np.bincount(
-            self.owner, moved.real, len(self.directions)
-        ) / scale - 1j * np.bincount(self.owner, moved.imag, len(self.directions)) / scale
+        in_phase, across = (np.bincount(self.owner, part) for part in (moved.real, moved.imag))
+        return complex(pole), -in_phase / scale - 1j * across / scale

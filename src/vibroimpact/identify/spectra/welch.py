@@ -129,35 +129,22 @@ def psd_statistics(values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarr
     return power.mean(axis=-2), power.min(axis=-2), power.max(axis=-2)
 
 
-def segment_correlation(spectra: ConfigPart, sampling_frequency_Hz: float, lags: int) -> np.ndarray:
-    """Return rho (lags,): squared correlation of the spectra of segments 1, 2, ... steps apart.
-
-    It holds for white noise.
-    """
-    layout = sampling_frequency_Hz, spectra.segment_s, spectra.overlap
-    length, step, _ = segment_layout(round(spectra.segment_s * sampling_frequency_Hz), *layout)
-    window = window_values(spectra.window, length)
-    products = [
-        np.dot(window[: max(length - lag * step, 0)], window[lag * step :])
-        for lag in range(1, lags + 1)
-    ]
-    return (np.array(products) / np.dot(window, window)) ** 2
-
-
 def effective_averages(
     duration_s: float, sampling_frequency_Hz: float, spectra: ConfigPart
 ) -> float:
     """Return nu, the effective degrees of freedom of one bin of the averaged PSD.
 
     A bin is worth nu/2 independent averages: nu = 2 M / (1 + 2 sum_k (1 - k/M) rho_k) with M
-    segments and rho of segment_correlation. Overlapping segments share data, so nu < 2 M.
+    segments and rho_k the squared correlation of the spectra of segments k steps apart, for white
+    noise. Overlapping segments share data, so nu < 2 M.
     """
-    samples = int(round(duration_s * sampling_frequency_Hz))
-    _, _, count = segment_layout(samples, sampling_frequency_Hz, spectra.segment_s, spectra.overlap)
+    layout = sampling_frequency_Hz, spectra.segment_s, spectra.overlap
+    length, step, count = segment_layout(int(round(duration_s * sampling_frequency_Hz)), *layout)
     if count == 1:
         return 2.0
-    lag = np.arange(1, count)
-    rho = segment_correlation(spectra, sampling_frequency_Hz, count - 1)
+    lag, window = np.arange(1, count), window_values(spectra.window, length)
+    products = [np.dot(window[: max(length - k * step, 0)], window[k * step :]) for k in lag]
+    rho = (np.array(products) / np.dot(window, window)) ** 2
     return 2.0 * count / (1.0 + 2.0 * np.sum((1.0 - lag / count) * rho))
 
 
