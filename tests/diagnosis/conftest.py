@@ -6,8 +6,9 @@ import pytest
 from tests.support.contact_truth import contact_campaign
 from vibroimpact.campaign.file import Channel, Level, campaign_dataset
 from vibroimpact.diagnosis.comparison import Comparison
-from vibroimpact.diagnosis.explanations import Structure
+from vibroimpact.diagnosis.explanations import Point, Structure
 from vibroimpact.diagnosis.measurement.signals import signals_of
+from vibroimpact.diagnosis.measurement.simulated_records import simulate_records
 from vibroimpact.excitation.random_force import band_limited_noise
 
 RATE, SECONDS, GAP = 2048.0, 8.0, 2.8886e-4
@@ -26,7 +27,7 @@ def measured(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def comparison(study_config):
-    """The study's tube beside records of band-limited forces, in which sensors measure noise."""
+    """The study's tube beside records of its own motion under band-limited forces, and noise."""
     rng, samples = np.random.default_rng(5), int(RATE * SECONDS)
     points = {"apex": (0, 0, 1.0), "left": (-0.3, 0, 0.5), "right": (0.3, 0, 0.5)}
     channels = [
@@ -38,7 +39,17 @@ def comparison(study_config):
     force = np.stack(
         [load * band_limited_noise(rng, samples, RATE, (5.0, 200.0))[None] for load in LOADS]
     )
-    response = 1.0e-3 * rng.standard_normal((len(LOADS), len(channels), samples))
     levels = [Level(f"load {load}", GAP) for load in LOADS]
-    campaign = campaign_dataset(force, response, channels, [drive], levels, RATE, start_up="rest")
-    return Comparison(signals_of(campaign), Structure(study_config, campaign))
+
+    def compared(response):
+        parts = channels, [drive], levels, RATE
+        campaign = campaign_dataset(force, response, *parts, start_up="rest")
+        return Comparison(signals_of(campaign), Structure(study_config, campaign))
+
+    noise = 1.0e-3 * rng.standard_normal((len(LOADS), len(channels), samples))
+    still = compared(noise)
+    schedule = still.rates.schedule(SECONDS, study_config.integration.scheme)
+    runs = [(record, GAP, 1) for record in range(len(LOADS))]
+    model = still.structure.model(Point())
+    motion = simulate_records(model, schedule, force, runs, still.signals.kinds)
+    return compared(noise + motion / still.structure.scale[:, None])

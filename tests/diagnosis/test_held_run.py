@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.diagnosis.played import played
-from vibroimpact.diagnosis.bench import holding_lines, holds, mean_log_power
+from vibroimpact.diagnosis.bench import _free_lines, holding_lines, holds, mean_log_power
 from vibroimpact.diagnosis.explanations import Point, Term, seen
 from vibroimpact.integration.held_run import HeldLane, hold
 
@@ -39,6 +39,14 @@ def test_dampers_of_the_right_model_bear_hardly_any_force(bench):
         moving = each.moving
         ratio = force.std(axis=-1)[moving] / (bench.strength * speed.std(axis=0)[moving])
         assert ratio.max() < limit
+
+
+def test_what_rings_above_the_band_bears_no_force_within_it(bench):
+    """Dampers act on the modes of the band alone. Those above move the sensors in the band as well,
+    when the structure is struck, and sensors see all of them.
+    """
+    lines, free = holding_lines(bench, [Point()])[0, -1], _free_lines(bench)[-1]
+    assert np.mean(np.abs(lines) ** 2) < 2e-4 * np.mean(np.abs(free) ** 2)
 
 
 def test_held_motion_follows_the_impacts(bench):

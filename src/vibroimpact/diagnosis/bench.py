@@ -22,7 +22,7 @@ from .measurement.stretches import Stretch
 
 BANDS = 18  # logarithmic, of a stretch's lines; each has a level of its own
 FIRST_BAND = 4  # lines in the lowest
-NUDGE, LOST = 3.0e-6, 1.0e-4  # relative change of frequencies; of the power of the lines
+NUDGE, LOST = 1.0e-7, 1.0e-6  # relative change of frequencies; of the power of a held channel
 END_S = 0.3  # of a run: before its end
 
 
@@ -180,9 +180,24 @@ def holds(bench: Bench, modes: int) -> np.ndarray:
     impacts drive them apart.
     """
     lines = holding_lines(bench, [Point(), Point(frequency=(NUDGE,) * modes)])
-    apart = (lines[1] - lines[0]) * whitening(bench, lines[0])
+    apart = (lines[1] - lines[0]) * whitening(bench, _free_lines(bench))
     power = np.sum(np.abs(apart) ** 2, axis=(1, 2)) / counts(bench, lines[0]).sum(axis=(1, 2))
     return np.nan_to_num(power, nan=np.inf) < LOST
+
+
+def _free_lines(bench: Bench) -> np.ndarray:
+    """Return (stretch, channel, line): the holding force of a model that does not move."""
+    rate, first = (
+        bench.schedule.sampling_frequency,
+        int(FORGET_S * bench.schedule.sampling_frequency),
+    )
+    out = []
+    for number, stretch in enumerate(bench.stretches):
+        motion = sampled_motion(bench, number, np.zeros(len(bench.structure.names)))
+        speed = np.gradient(motion, axis=-1)[:, first:] * rate
+        lines = fft.rfft(speed * np.hanning(speed.shape[-1]), axis=-1)
+        out.append(stretch.hold * bench.strength * lines[:, _inside(bench, _frequencies(bench))])
+    return np.stack(out)
 
 
 def touches(bench: Bench) -> np.ndarray:

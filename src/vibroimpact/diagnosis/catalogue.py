@@ -93,6 +93,7 @@ FAR: dict[str, Sequence[tuple[float, ...]]] = {
 # The sizes are those of the drive, which may be at a stiff end: springs elsewhere are far softer.
 OBSTACLE = [
     *((share, 1.0) for share in (0.2, 0.3, 0.45, 0.7, 1.0, 1.5)),
+    *((share, 4.0) for share in (0.45, 0.7)),
     *((near, 100.0) for near in (0.2, 0.6)),
 ]
 AT_A_KNOWN_PLACE: dict[str, Sequence[tuple[float, ...]]] = FAR | {

@@ -12,7 +12,7 @@ from vibroimpact.integration.contact_convergence import contact_contraction
 from vibroimpact.reduction.modal_model import ModalModel
 
 from .bench import Bench, holds
-from .constants import LINEAR_HOLD, SCREENED_S, STRENGTH, STRETCH_S
+from .constants import HOLD_SHARES, LINEAR_HOLD, SCREENED_S, STRENGTH, STRETCH_S
 from .coordinates import Coordinate, nuisance_coordinates
 from .explanations import Structure, seen
 from .measurement.signals import Signals
@@ -26,6 +26,7 @@ BEGIN, STARTS = 0.2, 3  # start of the first stretch as a share of the record; s
 # fewer than make the iteration of contact contract by CONTRACTION.
 FEWER_STEPS, CONTRACTION = 0.5, 0.2
 LOWEST = 1.5  # of the lowest load over the gap: records at that load
+LOST_SHARE = 0.3  # of the strength, for a record that none holds
 INSIDE = (1.3, 0.92)  # of the ends of the held band: the band of the lines
 
 
@@ -80,6 +81,11 @@ class Comparison:
         """Return the number of modes up to the upper end of the band that are seen."""
         return len(self._seen)
 
+    @property
+    def all_modes(self) -> int:
+        """Return the number of modes that are seen, in the band and above."""
+        return int(seen(self._model).sum())
+
     @cached_property
     def _seen(self):
         """Return the numbers of the modes of the model as given that are seen in the band."""
@@ -97,8 +103,7 @@ class Comparison:
         """Return the coordinates of the nuisances: of the modes in the band, of all channels and,
         if motion across the force is seen, of its direction.
         """
-        ratio = self._model.damping / (2.0 * np.maximum(self._model.omega, 1.0e-12))
-        return nuisance_coordinates(ratio[self._seen], len(self.structure.names), self.across)
+        return nuisance_coordinates(self.modes, len(self.structure.names), self.across)
 
     @cached_property
     def across(self) -> bool:
@@ -163,7 +168,7 @@ class Comparison:
         """Return the records that do not hold the model as given: their sensors are too few for
         their impacts, and without a hold the lines show nothing.
         """
-        return tuple(record for record, held in enumerate(self._held) if not held)
+        return tuple(record for record, (_, held) in enumerate(self._held) if not held)
 
     def widened(self) -> Comparison:
         """Return the Comparison that takes in the records that do not hold the model."""
@@ -184,15 +189,29 @@ class Comparison:
         """Return {record: starts of its compared stretches, s}, of the records that have any."""
         if self.with_lost:
             return {record: self._starts(record) for record in range(len(self.signals.load))}
-        return {record: held for record, held in enumerate(self._held) if held}
+        return {record: held for record, (_, held) in enumerate(self._held) if held}
 
     @cached_property
-    def _held(self) -> list[list[float]]:
-        """Return the starts in s of the stretches of each record that hold the model as given."""
+    def _held(self) -> list[tuple[float, list[float]]]:
+        """Return of each record (the strongest of HOLD_SHARES that holds most of its stretches, the
+        starts in s of those that it holds).
+        """
         starts = [self._starts(record) for record in range(len(self.signals.load))]
-        places = [(record, at) for record, own in enumerate(starts) for at in own]
-        good = dict(zip(places, holds(self._bench(places), self.modes), strict=True))
-        return [[at for at in own if good[record, at]] for record, own in enumerate(starts)]
+        out: list[tuple[float, list[float]]] = [(LOST_SHARE, [])] * len(starts)
+        for share in HOLD_SHARES:
+            left = [
+                (r, at) for r, own in enumerate(starts) for at in own if len(out[r][1]) < len(own)
+            ]
+            if not left:
+                break
+            bench = self._bench(left, shares=[share] * len(starts))
+            held = [
+                place for place, good in zip(left, holds(bench, self.modes), strict=True) if good
+            ]
+            for record in range(len(starts)):
+                own = [at for number, at in held if number == record]
+                out[record] = max(out[record], (share, own), key=lambda pair: len(pair[1]))
+        return out
 
     def _starts(self, record: int) -> list[float]:
         """Return the starts of the stretches of a record, s."""
@@ -223,20 +242,25 @@ class Comparison:
         where = self.band, self.rates, self.structure.scale
         return tuple(stretches_of(self.signals, places, duration_s, *where))
 
-    def _bench(self, places, duration_s=STRETCH_S):
+    def _bench(self, places, duration_s=STRETCH_S, shares=None):
         """Return the Bench of places, its dampers STRENGTH times as strong as the impedance of the
         structure at its sensors: the first frequency over the largest square of a mode shape.
+
+        shares (record,): of that; those that hold the records if None.
         """
         low, high = self.band
+        if shares is None:
+            shares = [
+                LINEAR_HOLD if record in self.linear else share
+                for record, (share, _) in enumerate(self._held)
+            ]
         scheme = self.structure.config.integration.scheme
         inside = (self._model.omega > 0.0) & (self._model.frequencies < high)
         largest = float(np.max(self._model.sensor_shapes[inside] ** 2))
+        stretches = self._cut(list(dict.fromkeys(places)), duration_s)
         return Bench(
             self.structure,
-            tuple(
-                replace(own, hold=LINEAR_HOLD) if own.record in self.linear else own
-                for own in self._cut(list(dict.fromkeys(places)), duration_s)
-            ),
+            tuple(replace(own, hold=shares[own.record]) for own in stretches),
             self.rates.schedule(duration_s, scheme),
             (INSIDE[0] * low, INSIDE[1] * high),
             STRENGTH * (self._first / largest),

@@ -20,7 +20,6 @@ NUISANCES = {
     "turn": TURN_SD,
 }
 FARTHEST = 4.0  # sigma of a nuisance
-LEAST_DAMPING = 0.4  # of the scatter of a frequency, over it: see nuisance_coordinates
 ENDS = (0.02, 0.98)  # of a tube: no effect is sought nearer to its ends
 PLACE_SIZE = 0.05  # of its length
 DIRECTION_SIZE_DEG = 20.0
@@ -68,26 +67,15 @@ class Coordinate:
         return float(np.log(value / self.size)) if self.log else float(value / self.size)
 
 
-def nuisance_coordinates(
-    damping_ratio: np.ndarray, channels: int, turned: bool
-) -> list[Coordinate]:
+def nuisance_coordinates(modes: int, channels: int, turned: bool) -> list[Coordinate]:
     """Return the coordinates of the frequencies and damping of modes, of the gains and, if
     `turned`, of the direction of the force.
-
-    damping_ratio (mode,): a damping whose scatter moves its mode far less than the scatter of the
-    frequency is not fitted.
     """
-    heavy = DAMPING_SD * damping_ratio > LEAST_DAMPING * FREQUENCY_SD
-    numbers = {
-        "frequency": range(len(damping_ratio)),
-        "damping": np.flatnonzero(heavy).tolist(),
-        "gain": range(channels),
-        "turn": range(int(turned)),
-    }
+    numbers = {"frequency": modes, "damping": modes, "gain": channels, "turn": int(turned)}
     return [
         Coordinate(kind, index, size, low=-FARTHEST, high=FARTHEST, step=STEPS["nuisance"], sd=1.0)
         for kind, size in NUISANCES.items()
-        for index in numbers[kind]
+        for index in range(numbers[kind])
     ]
 
 

@@ -212,7 +212,7 @@ def _seen_effects(comparison: Comparison) -> list[Effect]:
 
 def _level_and_floor(comparison: Comparison, searched: Search) -> tuple[float, float]:
     """Return the mean log power of the holding force with the best hypothesis, and its floor."""
-    best = max(searched.hypotheses, key=lambda each: each.gain, default=searched.nothing)
+    best = max([searched.nothing, *searched.hypotheses], key=lambda each: each.gain)
     return floor_of(comparison, best.fit)
 
 

@@ -31,7 +31,7 @@ def floor_of(comparison: Comparison, best: Fit) -> tuple[float, float]:
     """
     bench = comparison.fitted()
     rng = np.random.default_rng(1)
-    modes, channels = comparison.modes, len(comparison.structure.names)
+    modes, channels = comparison.all_modes, len(comparison.structure.names)
     played = Point(
         best.point.terms,
         tuple(FREQUENCY_SD * rng.standard_normal(modes)),

@@ -99,9 +99,10 @@ class FreeRuns:
 
     def farther(self, records: Sequence[int] | np.ndarray) -> bool:
         """Return whether the spectra of one of records are farther off after completion than
-        before, and farther than the runs of the completed model are from one another.
+        before, and than the runs of the completed model are from one another, by more than a right
+        explanation may be.
         """
-        least = np.maximum(self.as_given._beyond_chance(), 0.0)
+        least = FREE_EXCESS_DB + np.maximum(self.as_given._beyond_chance(), 0.0)
         return bool(np.any((self._beyond_chance() > least)[records]))
 
     def _beyond_chance(self):

@@ -14,6 +14,7 @@ from operator import attrgetter
 
 import numpy as np
 
+from vibroimpact.config.problems import ConfigError
 from vibroimpact.diagnosis.verdict.content import NINETY_SD
 from vibroimpact.diagnosis.verdict.misfit import excess
 
@@ -207,7 +208,10 @@ def _run(points: Sequence[Point], known: FreeRuns, records: Sequence[int]) -> li
     away, scatter = given["after_dB"] or 0.0, given["floor_dB"] or 0.0
     out = []
     for point in points:
-        told = known.completed(point, records).distance(records)
+        try:
+            told = known.completed(point, records).distance(records)
+        except (ConfigError, ValueError):
+            continue  # its values make no model
         if (after := told["after_dB"]) is not None and (floor := told["floor_dB"]) is not None:
             # a floor that grows, as when one run whirls and another does not, closes nothing
             closed = 1.0 - excess(after, min(floor, scatter)) / max(excess(away, scatter), 1.0e-9)

@@ -100,7 +100,7 @@ def _held(bench, model, gain):
     gains of their channels.
     """
     frequency = compared_frequencies(bench)
-    shapes = _shapes(bench, model)
+    shapes = model.sensor_shapes * (model.frequencies < bench.held_below_Hz)[:, None]
     strength = np.where(bench.measures_motion, bench.strength, 0.0)
     own = np.einsum(
         "ms,lm,mt->lst", shapes, receptances(model, frequency), shapes, optimize=True
@@ -109,15 +109,10 @@ def _held(bench, model, gain):
     return (gain * strength)[:, None] * free
 
 
-def _shapes(bench, model):
-    """Return (mode, sensor): the shapes of the modes that are held, 0 of the others."""
-    return model.sensor_shapes * (model.frequencies < bench.held_below_Hz)[:, None]
-
-
 def _column(bench, held, model):
     """Return (channel, line): the holding force per force at the last element of a model."""
     frequency = compared_frequencies(bench)
-    moved = (receptances(model, frequency) * model.element_shapes[:, -1]) @ _shapes(bench, model)
+    moved = (receptances(model, frequency) * model.element_shapes[:, -1]) @ model.sensor_shapes
     return np.einsum("lst,lt->sl", held, moved)  # a factor by line, as of velocity, is in the force
 
 

@@ -157,12 +157,15 @@ class _Prepared:
         self.signature = lru_cache(maxsize=None)(self._signature)
 
     def _layout(self, model, lanes=LANES):
-        """Return the ModalLayout of a model whose sensors are force channels too."""
-        held = model.sensor_shapes * (model.omega < self.highest)[:, None]
+        """Return the ModalLayout of a model with two more force channels of each sensor: its modes
+        that are held, and the others, on which no force acts.
+        """
+        below = (model.omega < self.highest)[:, None]
+        held, others = model.sensor_shapes * below, model.sensor_shapes * ~below
         laws = model.contact_laws
         if not laws.plain.all():  # all points take the general law: more models side by side
             laws = laws.with_columns(damping=np.maximum(laws.damping, NO_DAMPING))
-        shapes = np.hstack([model.drive_shapes, held])
+        shapes = np.hstack([model.drive_shapes, held, others])
         driven = replace(model, drive_shapes=shapes, contact_laws=laws)
         return ModalLayout(driven, self.schedule.scheme, lanes)
 
@@ -230,19 +233,28 @@ class _LaneLayout(ModalLayout):
         return self._stacked(tables, ("shapes",))
 
     def hold(self, modal: Modal) -> Hold:
-        """The kernel's Hold: the last force channels are sensors."""
+        """The kernel's Hold: the last force channels are the two of each sensor; it measures the
+        motion of both, and acts on the first.
+        """
         total = self.model.drive_shapes.shape[1]
-        channels = np.arange(total - self.sensors, total)
-        rows = [np.flatnonzero(modal.row_force_channel == channel) for channel in channels]
+        channels = np.arange(total - 2 * self.sensors, total - self.sensors)
+        own = [np.flatnonzero(modal.row_force_channel == channel) for channel in channels]
+        rows = [
+            np.r_[each, np.flatnonzero(modal.row_force_channel == channel + self.sensors)]
+            for each, channel in zip(own, channels, strict=True)
+        ]
         return Hold(
             channel=channels.astype(np.int64),
             row_start=np.cumsum([0, *map(len, rows)]).astype(np.int64),
             row=np.concatenate([*rows, np.zeros(0, np.int64)]).astype(np.int64),
-            gain=np.stack([self._gain(modal, rows, lane) for lane in range(self.lanes)], axis=-1),
+            gain=np.stack([self._gain(modal, own, lane) for lane in range(self.lanes)], axis=-1),
             measured=np.zeros((self.sensors, self.lanes)),
             difference=np.zeros((self.sensors, self.lanes)),
             memory=np.zeros((self.sensors, self.lanes)),
             rate=np.zeros((self.sensors, self.lanes)),
+            strength=np.ascontiguousarray(self.strength, float),
+            implicit=np.zeros((self.sensors, self.lanes)),
+            missed=np.zeros((self.sensors, self.lanes)),
         )
 
     def _gain(self, modal, rows, lane):
@@ -332,7 +344,8 @@ class HeldRun(Run):
         for lane, run in enumerate(self.runs):
             forces = run.force.shape[1]
             out[:, :forces, lane] = run.force_scale * run.force[first : first + count]
-            out[:, forces:own, lane] = run.scale * run.motion[first : first + count]
+            held = slice(forces, forces + run.motion.shape[1])
+            out[:, held, lane] = run.scale * run.motion[first : first + count]
         out[:, own:] = 1.0
         return out
 

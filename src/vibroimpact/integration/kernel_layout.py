@@ -292,7 +292,7 @@ class ModalLayout:
     def hold(self, modal: Modal) -> Hold:
         """The kernel's Hold: no sensor is held."""
         none = np.zeros(0, np.int64)
-        empty = [np.zeros((0, self.lanes)) for _ in range(4)]
+        empty = [np.zeros((0, self.lanes)) for _ in range(7)]
         return Hold(none, np.zeros(1, np.int64), none, np.zeros((0, 0, self.lanes)), *empty)
 
     def fluid(self, modal: Modal, cases: int, laws: Sequence[FluidLaws] = ()) -> Fluid:

@@ -20,7 +20,9 @@ PASS_FRACTION = 0.78125  # of half the sampling frequency: 800 Hz of 1024 Hz
 KAISER_ATTENUATION_DB = 100.0
 DIFFERENCE_ERROR = 1e-6  # relative, of the second derivative up to the end of the passband
 LONGEST_DIFFERENCE = 30  # order at most, even if DIFFERENCE_ERROR asks for more
-DROOP_TERMS = 5  # of the polynomial in 1 - cos that compensates the first stage's droop
+# Of the polynomial in 1 - cos that compensates the first stage's droop: with a second stage, and
+# without one, where the passband goes up to 0.39 of the middle rate.
+DROOP_TERMS, DROOP_TERMS_ALONE = 5, 15
 
 
 @dataclass(frozen=True)
@@ -86,7 +88,8 @@ def output_filter(steps_per_second: float, sampling_frequency: float) -> OutputF
     passband, one_stage = PASS_FRACTION * stop / middle_rate, round(ratio / RATIO) == 1
     first = _first_stage((passband / RATIO) if one_stage else stop / steps_per_second)
     lowpass = np.ones(1) if one_stage else _kaiser_lowpass(passband, stop / middle_rate)
-    second = np.convolve(lowpass, _droop_compensation(first, passband))
+    terms = DROOP_TERMS_ALONE if one_stage else DROOP_TERMS
+    second = np.convolve(lowpass, _droop_compensation(first, passband, terms))
     order = next(
         (
             order
@@ -122,13 +125,13 @@ def _first_stage(band: float) -> np.ndarray:
     return taps
 
 
-def _droop_compensation(first: np.ndarray, passband: float) -> np.ndarray:
+def _droop_compensation(first: np.ndarray, passband: float, terms: int) -> np.ndarray:
     """Taps at the middle rate that compensate the first stage's droop up to passband (cycles per
     middle sample); gain exactly 1 at 0.
     """
     frequency = np.linspace(0.0, passband, 200)[1:]
     x = 1.0 - np.cos(2 * np.pi * frequency)
-    powers = x[:, None] ** np.arange(1, DROOP_TERMS + 1)
+    powers = x[:, None] ** np.arange(1, terms + 1)
     weights = np.linalg.lstsq(powers, 1.0 / _amplitude(first, frequency / RATIO) - 1.0, rcond=None)[
         0
     ]

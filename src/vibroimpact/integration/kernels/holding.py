@@ -9,7 +9,10 @@ displacement, and the rate of e as row_velocity takes it from displacements,
 
     rate_free = w0 (e_free - e) + w1 m,        u = (I + w0 c G)^-1 c rate_free = gain rate_free,
 
-with e_free without a damper at the end of the step and G the compliance between the sensors.
+with e_free without a damper at the end of the step, under the contact forces of the last one, and G
+the compliance between the sensors. What a step misses of c times the rate that it had, as contact
+forces change, the next step adds: the impulse of a damper is that of its true rate.
+
 Measured motion and model pass the same difference, so that the difference makes no error between
 them.
 """
@@ -31,8 +34,11 @@ def hold_sensors(modal, hold, state, work, drive, first):
         now, free = load(hold.measured, s), measured
         for k in range(hold.row_start[s], hold.row_start[s + 1]):
             now = now - load(state.row_displacement, hold.row[k])
-            free = free - load(work.u_free, hold.row[k])
-        memory = fma(w2, now - load(hold.difference, s), w3 * load(hold.memory, s))
+            free = free - load(work.u_free, hold.row[k]) - load(state.row_deflection, hold.row[k])
+        moved, memory = now - load(hold.difference, s), load(hold.memory, s)
+        last = fma(w0, moved, w1 * memory)  # the rate at the end of the last step
+        store(hold.missed, s, load(hold.strength, s) * last - load(hold.implicit, s))
+        memory = fma(w2, moved, w3 * memory)
         store(hold.rate, s, fma(w0, free - now, w1 * memory))
         store(hold.memory, s, memory)
         store(hold.difference, s, now)
@@ -41,4 +47,5 @@ def hold_sensors(modal, hold, state, work, drive, first):
         force = spread(0.0)
         for other in range(sensors):
             force = fma(load(hold.gain, s * sensors + other), load(hold.rate, other), force)
-        store(drive, first + hold.channel[s], force)
+        store(hold.implicit, s, force)
+        store(drive, first + hold.channel[s], force + load(hold.missed, s))

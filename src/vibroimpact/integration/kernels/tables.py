@@ -210,6 +210,9 @@ class Hold(NamedTuple):
     difference: np.ndarray  # (sensor, lane) m, measured less model, one step earlier
     memory: np.ndarray  # (sensor, lane) m/s, kept by row_velocity from the last step
     rate: np.ndarray  # (sensor, lane) m/s, work space
+    strength: np.ndarray  # (sensor, lane) N s/m
+    implicit: np.ndarray  # (sensor, lane) N, as the last step took it
+    missed: np.ndarray  # (sensor, lane) N, what the last step should have added
 
 
 class Fluid(NamedTuple):

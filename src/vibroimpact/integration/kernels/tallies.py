@@ -39,7 +39,7 @@ def tally_drive(modal, state, tally, work, in_contact, forces):
     for g in range(modal.row_start.size - 1):
         row0, row_f, row1 = modal.row_start[g], modal.force_row_start[g], modal.row_start[g + 1]
         for f in range(row_f, row1):
-            u = load(work.u_free, f)
+            u_free = u = load(work.u_free, f)
             if in_contact:
                 at = modal.compliance_start[g] + (f - row0) * (row1 - row0)
                 for r in range(row0, row_f):
@@ -54,6 +54,7 @@ def tally_drive(modal, state, tally, work, in_contact, forces):
                 store(tally.fluid_work, 0, fma(mean, du, load(tally.fluid_work, 0)))
             store(state.row_displacement, f, u)
             store(state.row_force, f, force)
+            store(state.row_deflection, f, u - u_free)
     store(tally.input_work, 0, input_work)
 
 
