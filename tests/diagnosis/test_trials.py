@@ -7,7 +7,7 @@ import pytest
 
 from tests.support.straight_path import straight_path
 from vibroimpact.diagnosis.bench import holding_lines
-from vibroimpact.diagnosis.catalogue import far_terms, halfway, locations
+from vibroimpact.diagnosis.catalogue import far_terms, halfway, locations, within_priors
 from vibroimpact.diagnosis.explanations import Point, Term
 from vibroimpact.diagnosis.screening import Screened, trials_again
 from vibroimpact.diagnosis.search import one_law
@@ -28,6 +28,18 @@ def test_every_effect_has_trials_that_can_be_run(comparison):
         if not np.isfinite(lines).reshape(len(lines), -1).all(axis=1).any():
             failed.append(effect.id)
     assert failed == []
+
+
+@pytest.mark.parametrize(
+    ("effect", "size", "share"),
+    [("hunt_crossley", "slowness", 0.5), ("contact_damping", "contact_stiffness", 1.5e-5)],
+)
+def test_dissipation_by_which_right_codes_differ_is_no_effect(comparison, effect, size, share):
+    """In contact, by the step alone: half of the steps take as much as an alpha of 0.08 s/m."""
+    sizes = comparison.sizes
+    for times, within in ((0.9, True), (1.1, False)):
+        term = Term(effect, "all", (times * share * sizes[size],))
+        assert within_priors(term, comparison.signals.rate, sizes) == within
 
 
 def test_few_trials_of_an_effect_are_all_tried_again():

@@ -36,6 +36,7 @@ NO_EFFECT = {
     "contact_stiffness": 0.35,
 }
 NO_CONTACT_DAMPING = 1.5e-5  # s, times the contact stiffness
+NO_HUNT_CROSSLEY = 0.5  # over the speed of the drive: half steps of a right model gain by 0.04
 LATE_SAMPLES = 0.25  # of a delay that is named
 
 
@@ -188,6 +189,8 @@ def within_priors(term: Term, sampling: float, sizes: Mapping[str, float]) -> bo
         return abs(value) < 2.0 * TURN_SD
     if term.effect_id == "contact_damping":
         return value < NO_CONTACT_DAMPING * sizes["contact_stiffness"]
+    if term.effect_id == "hunt_crossley":
+        return value < NO_HUNT_CROSSLEY * sizes["slowness"]
     if term.effect_id == "contact_stiffness":
         value /= sizes["contact_stiffness"]
     known = NO_EFFECT.get(term.effect_id)

@@ -4,8 +4,10 @@
 
 v_s is the measured velocity of sensor s, S_s its row and c_s the strength of its damper. If model
 and structure agree, the dampers carry noise; the holding force u_s is a force missing in the model.
+With all modes held, the observer is passive and collocated. Dampers that act on some modes only can
+drive a structure that presses against its supports.
 
-Source: a passive, collocated observer: D.G. Luenberger, IEEE Trans. Autom. Control 16 (1971)
+Source: natural observers: D.G. Luenberger, IEEE Trans. Autom. Control 16 (1971)
 596-602; M. Demetriou, Math. Control Signals Syst. (natural observers of second-order systems).
 """
 
@@ -80,8 +82,8 @@ def hold(
 ) -> HeldRecords:
     """Return the HeldRecords of any number of runs.
 
-    highest_Hz: modes above it are not held. The measured band ends there: dampers on higher modes
-    would only drain their ringing.
+    highest_Hz: dampers do not act on modes above it. The measured band ends there: they would only
+    drain their ringing. Sensors see all modes: those above move them in the band too.
 
     The result of a run does not depend on the others. A run that diverges, or whose contact is too
     stiff for the step, is NaN. All runs have the same numbers of sensors and forces; a model with
