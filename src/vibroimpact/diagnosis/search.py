@@ -203,8 +203,11 @@ def _forward(
         if best.sure_gain_over(base) < needed_gain(base.worth) or best.gain <= NULL_GAIN:
             break  # what right models reach too is no ground for one more
         if len(best.point.terms) > 1:
-            others = _without_first(at, best, nothing, screened[nothing.point.name], log)
-            found |= {each.point.name: each for each in others}
+            others = _without_one(at, best, nothing, screened[nothing.point.name], log)
+            found |= {
+                each.point.name: max(each, found.get(each.point.name, each), key=_rated)
+                for each in others
+            }
             best = max([best, *others], key=_rated)
         base = best
     hypotheses = sorted(found.values(), key=lambda each: -each.gain)
@@ -442,7 +445,7 @@ def jackknife(change: np.ndarray, lines: np.ndarray) -> tuple[float, float]:
     return float(change.sum() / lines.sum()), float(error)
 
 
-def _without_first(
+def _without_one(
     at: _Benches,
     best: Hypothesis,
     nothing: Hypothesis,
@@ -451,7 +454,8 @@ def _without_first(
 ) -> list[Hypothesis]:
     """Return Hypotheses in which the first effect of the best is dropped or, if that costs too
     much, exchanged: it was chosen before the others were known, and may stand for another one, or
-    for itself at another place.
+    for itself at another place. And one in which the last is dropped: it may have helped the fit of
+    the others alone.
 
     screened: effects in addition to nothing, best first: the rivals of the first effect, which are
     tried again in addition to the others.
@@ -471,8 +475,10 @@ def _without_first(
         raced = _race(at, about, ranked(about, rivals[:RIVALS_AGAIN]), EXCHANGED)[:2]
         points = [each.point for each in raced]
         out += _kept(at, _finals(at, points, nothing, polished=False), nothing)
+    rest = replace(best.point, terms=best.point.terms[:-1])
+    out += _kept(at, _finals(at, [rest], nothing, polished=False), nothing)
     for each in out:
-        log(f"without the first: {each.point.name}: {each.gain:.3f}, apart {each.apart:.3f}")
+        log(f"without one: {each.point.name}: {each.gain:.3f}, apart {each.apart:.3f}")
     return out
 
 
