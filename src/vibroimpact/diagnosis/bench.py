@@ -187,11 +187,8 @@ def holds(bench: Bench, modes: int) -> np.ndarray:
 
 def _free_lines(bench: Bench) -> np.ndarray:
     """Return (stretch, channel, line): the holding force of a model that does not move."""
-    rate, first = (
-        bench.schedule.sampling_frequency,
-        int(FORGET_S * bench.schedule.sampling_frequency),
-    )
-    out = []
+    rate, out = bench.schedule.sampling_frequency, []
+    first = int(FORGET_S * rate)
     for number, stretch in enumerate(bench.stretches):
         motion = sampled_motion(bench, number, np.zeros(len(bench.structure.names)))
         speed = np.gradient(motion, axis=-1)[:, first:] * rate
