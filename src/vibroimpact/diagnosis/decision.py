@@ -253,19 +253,16 @@ def conclusion(ranked: Sequence[tuple[Hypothesis, float]]) -> Conclusion:
 
 
 def ambiguity(decision: Decision) -> tuple[list[list[str]], list[float]]:
-    """Return (sets of effect ids that explain equally well, their probabilities); an exact alias
-    has the probability of the effect it is an alias of.
+    """Return (sets of effect ids that explain equally well, their probabilities); an effect and its
+    exact alias have equal parts of one probability.
     """
-    sets: list[list[str]] = []
-    chances: list[float] = []
+    found: dict[tuple[str, ...], tuple[list[str], float]] = {}
     for hypothesis, chance in decision.leading:
-        ids = hypothesis.point.ids
-        for alternative in (ids, *_aliases(hypothesis)):
-            if sorted(alternative) not in [sorted(known) for known in sets]:
-                sets.append(list(alternative))
-                chances.append(chance)
-    total = sum(chances)
-    return sets, [chance / total if total > 1.0 else chance for chance in chances]
+        alike = [hypothesis.point.ids, *_aliases(hypothesis)]
+        for ids in alike:
+            known, before = found.get(tuple(sorted(ids)), (ids, 0.0))
+            found[tuple(sorted(ids))] = known, before + chance / len(alike)
+    return [ids for ids, _ in found.values()], [chance for _, chance in found.values()]
 
 
 def _aliases(hypothesis):
