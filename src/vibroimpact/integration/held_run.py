@@ -30,7 +30,7 @@ from .kernels.lanes import LANES
 from .kernels.tables import Contact, Hold, Laws, Modal, Output, State
 from .preload import seated
 
-OWN_COEFFICIENTS = ("shapes", "row_compliance", *MODE_COEFFICIENTS)  # of Modal, by lane
+OWN_COEFFICIENTS = ("shapes", "acting_shapes", "row_compliance", *MODE_COEFFICIENTS)  # by lane
 OWN_OBSTACLES = ("stiffness", "gap", "offset_1", "offset_2")  # of Contact
 NO_DAMPING = 1e-12  # N s/m: as good as none, and yet a term of the general law
 HELD_TURN = 1.0  # rad of a mode in a step: above, displacements do not give its velocity
@@ -159,17 +159,12 @@ class _Prepared:
         self.signature = lru_cache(maxsize=None)(self._signature)
 
     def _layout(self, model, lanes=LANES):
-        """Return the ModalLayout of a model with two more force channels of each sensor: its modes
-        that are held, and the others, on which no force acts.
-        """
-        below = (model.omega < self.highest)[:, None]
-        held, others = model.sensor_shapes * below, model.sensor_shapes * ~below
+        """Return the _HeldLayout of a model."""
         laws = model.contact_laws
         if not laws.plain.all():  # all points take the general law: more models side by side
             laws = laws.with_columns(damping=np.maximum(laws.damping, NO_DAMPING))
-        shapes = np.hstack([model.drive_shapes, held, others])
-        driven = replace(model, drive_shapes=shapes, contact_laws=laws)
-        return ModalLayout(driven, self.schedule.scheme, lanes)
+        driven = replace(model, contact_laws=laws)
+        return _HeldLayout(driven, self.schedule.scheme, lanes, self.highest)
 
     def _contraction(self, model):
         return checked_contraction(model, self.schedule.steps_per_second, self.schedule.scheme)
@@ -200,6 +195,27 @@ class _Prepared:
             layout.model.contact_laws.plain,
         )
         return tuple((table.shape, table.tobytes()) for table in map(np.ascontiguousarray, tables))
+
+
+class _HeldLayout(ModalLayout):
+    """A model whose sensors are its last force channels: they see all modes, and what is put on
+    them acts on those below `highest` [rad/s] alone.
+    """
+
+    def __init__(self, model: ModalModel, scheme: str, lanes: int, highest: float):
+        self.first, self.acting = model.drive_shapes.shape[1], model.omega < highest
+        shapes = np.hstack([model.drive_shapes, model.sensor_shapes])
+        super().__init__(replace(model, drive_shapes=shapes), scheme, lanes)
+
+    def _group_acting_shapes(self, g):
+        modes, driven = self.groups[g]
+        shapes = self._group_row_shapes(g)
+        own = len(self.implicit_shapes[g]) + np.flatnonzero(self._is_sensor(np.array(driven)))
+        shapes[own] *= self.acting[modes]
+        return shapes
+
+    def _is_sensor(self, channel):
+        return (channel >= self.first) & (channel < self.model.drive_shapes.shape[1])
 
 
 class _LaneLayout(ModalLayout):
@@ -235,21 +251,15 @@ class _LaneLayout(ModalLayout):
         return self._stacked(tables, ("shapes",))
 
     def hold(self, modal: Modal) -> Hold:
-        """The kernel's Hold: the last force channels are the two of each sensor; it measures the
-        motion of both, and acts on the first.
-        """
+        """The kernel's Hold: the last force channels are the sensors."""
         total = self.model.drive_shapes.shape[1]
-        channels = np.arange(total - 2 * self.sensors, total - self.sensors)
-        own = [np.flatnonzero(modal.row_force_channel == channel) for channel in channels]
-        rows = [
-            np.r_[each, np.flatnonzero(modal.row_force_channel == channel + self.sensors)]
-            for each, channel in zip(own, channels, strict=True)
-        ]
+        channels = np.arange(total - self.sensors, total)
+        rows = [np.flatnonzero(modal.row_force_channel == channel) for channel in channels]
         return Hold(
             channel=channels.astype(np.int64),
             row_start=np.cumsum([0, *map(len, rows)]).astype(np.int64),
             row=np.concatenate([*rows, np.zeros(0, np.int64)]).astype(np.int64),
-            gain=np.stack([self._gain(modal, own, lane) for lane in range(self.lanes)], axis=-1),
+            gain=np.stack([self._gain(modal, rows, lane) for lane in range(self.lanes)], axis=-1),
             measured=np.zeros((self.sensors, self.lanes)),
             difference=np.zeros((self.sensors, self.lanes)),
             memory=np.zeros((self.sensors, self.lanes)),

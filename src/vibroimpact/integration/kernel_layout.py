@@ -113,17 +113,17 @@ class ModalLayout:
         step = self.step(dt)
         row_start, force_row_start, channels = [0], [], []
         shapes: list[np.ndarray] = []  # (row, mode) of each group
+        acting: list[np.ndarray] = []
         compliance: list[np.ndarray] = []
         for g, (modes, driven) in enumerate(self.groups):
             implicit = len(self.implicit_shapes[g])
-            moved = self._group_row_shapes(g)
-            rows = np.zeros((len(moved), self.mode_start[g + 1] - self.mode_start[g]))
-            rows[:, : len(modes)] = moved
-            shapes.append(rows)
-            moved = rows[:, : len(modes)]
-            compliance.append(((moved * step.mode_compliance[modes]) @ moved.T).ravel())
+            padding = (0, 0), (0, self.mode_start[g + 1] - self.mode_start[g] - len(modes))
+            moved, moving = self._group_row_shapes(g), self._group_acting_shapes(g)
+            shapes.append(np.pad(moved, padding))
+            acting.append(np.pad(moving, padding))
+            compliance.append(((moved * step.mode_compliance[modes]) @ moving.T).ravel())
             force_row_start.append(row_start[-1] + implicit)
-            row_start.append(row_start[-1] + len(rows))
+            row_start.append(row_start[-1] + len(moved))
             channels += [-1] * implicit + driven
         return Modal(
             dt=float(dt),
@@ -132,6 +132,7 @@ class ModalLayout:
             force_row_start=np.array(force_row_start, np.int64),
             row_force_channel=np.array(channels, np.int64),
             shapes=np.concatenate([_by_panel(rows) for rows in shapes]),
+            acting_shapes=np.concatenate([_by_panel(rows) for rows in acting]),
             shape_start=_starts(shapes),
             row_compliance=np.concatenate([*compliance, np.zeros(1)]),
             compliance_start=_starts(compliance),
@@ -173,6 +174,10 @@ class ModalLayout:
         drive = self.force_shapes[modes][:, driven].T
         implicit = list(self.implicit_shapes[g].values())
         return np.array([*implicit, *drive]).reshape(-1, len(modes))
+
+    def _group_acting_shapes(self, g: int) -> np.ndarray:
+        """The same of the modes that a force on the row moves."""
+        return self._group_row_shapes(g)
 
     @cached_property
     def row_shapes(self) -> np.ndarray:

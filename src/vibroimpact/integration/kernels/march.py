@@ -18,7 +18,7 @@ the form of modal_step.StepCoefficients a step of a mode needs only the force at
     f, d     work.force, drive        force on a contact or element row, drive force    N
     G f      work.deflection          displacement of the rows by f                     m
     G, G_d   modal.row_compliance     Phi c Phi^T; G_d its columns of the drive         m/N
-    Phi      modal.shapes             mode shapes at the rows                           kg^-1/2
+    Phi      modal.shapes, .acting_shapes   mode shapes at the rows                     kg^-1/2
     c, k     modal.mode_compliance, .force_gain   q and dq per modal force              s²
     s        modal.force_shift        shift of q that replaces the force at the start   s²
     a, b     modal.decay, .restoring  dq per last dq, per shifted q                     1
@@ -143,7 +143,7 @@ def correct_and_predict(modal, state, tally, work, in_contact, phase):
                 p = tile_zero()
                 for r in range(first_row, row1):
                     from_row = at + tile + (r - row0) * PANEL
-                    p = tile_plus_vector(modal.shapes, from_row, load(work.force, r), p)
+                    p = tile_plus_vector(modal.acting_shapes, from_row, load(work.force, r), p)
                 q = tile_plus_scaled(modal.mode_compliance, j, p, load_tile(state.q_next_free, j))
                 step = tile_difference(q, load_tile(state.q, before + j))
                 dissipated, odd = even_and_odd_plus_dot(

@@ -20,11 +20,12 @@ class Modal(NamedTuple):
 
     The rows of a group are its contact directions, then its local elements, then its force
     channels. ``shapes`` holds for each group, from ``shape_start`` on, an array (panel, row, mode
-    of the panel), flat, in the order in which a step reads it; ``row_compliance`` in the same way
-    a (row, row) matrix.
+    of the panel), flat, in the order in which a step reads it; ``acting_shapes`` the same of the
+    modes that a force on the row moves, if they are not all; ``row_compliance`` in the same way a
+    (displaced row, row with force) matrix.
 
-    If each lane has a model of its own, shapes, row_compliance, the coefficients of the modes and
-    Output.shapes have a last axis of lanes.
+    If each lane has a model of its own, shapes, acting_shapes, row_compliance, the coefficients of
+    the modes and Output.shapes have a last axis of lanes.
     """
 
     dt: float  # s
@@ -33,6 +34,7 @@ class Modal(NamedTuple):
     force_row_start: np.ndarray  # (group,) first row of each group that is a force channel
     row_force_channel: np.ndarray  # (row,) force channel of the row, -1 for other rows
     shapes: np.ndarray  # flat [kg^-1/2]
+    acting_shapes: np.ndarray  # flat [kg^-1/2]
     shape_start: np.ndarray  # (group,)
     mode_compliance: np.ndarray  # (mode,) this and the next five: see modal_step.StepCoefficients
     force_shift: np.ndarray  # (mode,)
