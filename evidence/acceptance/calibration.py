@@ -18,11 +18,16 @@ def statements(verdict: dict[str, Any], truth: dict[str, Any]) -> list[tuple[flo
     """Return (probability, whether it is true) of what a verdict states: nothing missing, something
     else, and every explanation of its ranking, or of its ambiguity set where the ranking has none.
 
+    Of a hidden effect of strength 0, which changes nothing, it is true that nothing is missing.
+
     verdict, truth: contents of their files. Empty where the engine states no probability.
     """
     kind, whole = truth["kind"], right_names(truth)
     found = [
-        (verdict.get("probability_none"), kind in ("nothing", "fault") and not whole),
+        (
+            verdict.get("probability_none"),
+            (kind in ("nothing", "fault") and not whole) or _does_nothing(truth),
+        ),
         (verdict.get("probability_something_else"), kind == "out_of_catalogue"),
     ]
     ranked = [(row.get("probability"), sorted(row["ids"]) in whole) for row in verdict["ranking"]]
@@ -38,6 +43,11 @@ def statements(verdict: dict[str, Any], truth: dict[str, Any]) -> list[tuple[flo
         for probability, true in [*found, *ranked]
         if probability is not None
     ]
+
+
+def _does_nothing(truth: dict[str, Any]) -> bool:
+    """Return whether a hidden effect leaves no excess above the floor."""
+    return (truth.get("strength") or {}).get("floors") == 0.0
 
 
 def reliability(stated: Iterable[tuple[float, bool]]) -> list[dict[str, float]]:

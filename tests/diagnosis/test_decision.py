@@ -6,7 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from vibroimpact.diagnosis.decision import ambiguity, beside_spectra, counted, decide
+from vibroimpact.diagnosis.constants import RIGHT_FAR_OFF, RIGHT_NOTHING
+from vibroimpact.diagnosis.decision import ambiguity, beside_spectra, decide
 from vibroimpact.diagnosis.explanations import Point, Term
 from vibroimpact.diagnosis.search import Hypothesis, Search
 from vibroimpact.diagnosis.verdict.misfit import closed_fraction
@@ -81,53 +82,49 @@ def test_a_sure_gain_that_nulls_reach_is_none():
     assert [decided(each).verdict for each in even.values()] == ["none", "named"]
 
 
-@pytest.mark.parametrize(("before", "verdict"), [(1.2, "none"), (4.6, "unknown"), (None, "none")])
+def beside(decision, told, fit=None, farther=True):
+    return beside_spectra(decision, {"fit": fit or told, "holdout": told}, farther)
+
+
+@pytest.mark.parametrize(
+    ("before", "verdict"), [(1.2, "none"), (1.9, "unknown"), (4.6, "unknown"), (None, "none")]
+)
 def test_nothing_is_not_said_beside_spectra_that_are_far_off(before, verdict):
-    found = beside_spectra(decided(), misfit(before, before))
+    found = beside(decided(), misfit(before, before))
     assert found.verdict == verdict
-    assert (found.nothing > 0.9) == (verdict == "none") == (found.something_else < 0.1)
+    assert (found.nothing > 0.5) == (verdict == "none") == (found.open < 0.5)
+    assert found.nothing <= RIGHT_NOTHING
 
 
-def test_nothing_added_is_judged_by_the_records_farther_off():
+def test_nothing_is_not_said_beside_fitted_records_that_are_far_off():
     near, far = misfit(1.2, 1.2), misfit(5.3, 5.3)
-    assert counted(decided(), {"fit": far, "holdout": near}) is far
-    assert counted(decided(), {"fit": far, "holdout": None}) is far
-    assert counted(decided(hypothesis(1.0, "gap@all")), {"fit": far, "holdout": near}) is near
+    assert beside(decided(), near, fit=far).verdict == "unknown"
+    assert beside(decided(hypothesis(1.0, "gap@all")), near, fit=far).verdict == "named"
 
 
-def test_an_effect_that_leaves_spectra_far_off_is_refuted():
+def test_probabilities_fall_with_what_spectra_keep_above_their_floor():
     named = decided(hypothesis(1.5, "contact_damping@all"))
-    assert beside_spectra(named, misfit(16.0, 2.0)).verdict == "named"
-    found = beside_spectra(named, misfit(8.0, 6.0))
-    assert found.verdict == "unknown" and found.something_else > 0.9 and not found.ranked
+    chances = [beside(named, misfit(16.0, after)).ranked[0][1] for after in (1.0, 1.4, 2.0, 6.0)]
+    assert sorted(chances, reverse=True) == chances
+    assert chances[0] > 0.98 and chances[-1] == pytest.approx(RIGHT_FAR_OFF, abs=0.02)
 
 
-def test_a_part_that_whirls_by_chance_refutes_nothing():
-    named, far = decided(hypothesis(0.3, "quadratic_drag@tube")), misfit(14.0, 8.0)
-    near = misfit(12.0, 1.1)
-    assert beside_spectra(named, far, [near, near, far]).verdict == "named"
-    assert beside_spectra(named, far, [near, far, far]).verdict == "unknown"
-
-
-def test_an_effect_beside_which_records_stay_off_is_a_part():
-    named = decided(hypothesis(8.0, "contact_damping@all"))
-    off = replace(named, surely_off=True)
-    found = beside_spectra(off, misfit(11.8, 10.0), [misfit(11.8, 10.0), misfit(9.0, 1.2)])
-    assert found.verdict == "partly_explained" and found.best.ids == ("contact_damping",)
-    total = found.nothing + found.something_else + sum(chance for _, chance in found.ranked)
-    assert found.something_else > 0.5 and total == pytest.approx(1.0, abs=0.02)
-    assert beside_spectra(replace(decided(), surely_off=True), misfit(1.2, 1.2)).verdict == "none"
+@pytest.mark.parametrize(("before", "verdict"), [(16.0, "partly_explained"), (8.0, "unknown")])
+def test_an_effect_that_leaves_spectra_far_off_is_not_named(before, verdict):
+    found = beside(decided(hypothesis(1.5, "contact_damping@all")), misfit(before, 6.0))
+    assert found.verdict == verdict and found.best.ids == ("contact_damping",)
+    assert found.open > 0.5 > found.something_else
 
 
 def test_an_effect_that_spoils_spectra_without_excess_is_nothing():
-    found = beside_spectra(decided(hypothesis(0.3, "dry_friction@all")), misfit(1.1, 20.0))
+    found = beside(decided(hypothesis(0.3, "dry_friction@all")), misfit(1.1, 20.0))
     assert found.verdict == "none" and found.nothing > 0.9 and not found.ranked
 
 
 def test_an_effect_that_spoils_spectra_by_chance_is_not_refuted():
-    named = decided(hypothesis(1.5, "contact_damping@all"))
-    assert beside_spectra(named, misfit(1.6, 2.0)).verdict == "unknown"
-    assert beside_spectra(named, misfit(1.6, 2.0), farther=False) == named
+    named, spoiled = decided(hypothesis(1.5, "contact_damping@all")), misfit(1.3, 1.6)
+    assert beside(named, spoiled).verdict == "unknown"
+    assert beside(named, spoiled, farther=False).verdict == "named"
 
 
 def test_a_clear_gain_is_named():
@@ -164,12 +161,11 @@ def test_a_second_effect_that_gains_nothing_is_left_out():
 @pytest.mark.parametrize("rest", [0.0, 1.0, 2.0, 5.0])
 def test_probabilities_and_conclusion_agree(gain, rest):
     found = decided(hypothesis(gain, "gap@left"), hypothesis(0.9 * gain, "hertz@all"), rest=rest)
-    total = found.nothing + found.something_else + sum(chance for _, chance in found.ranked)
-    assert total == pytest.approx(1.0, abs=0.02)
+    total = found.nothing + found.open + sum(chance for _, chance in found.ranked)
+    assert total == pytest.approx(1.0) and found.something_else < found.open
+    assert (found.open >= 0.5) == (found.verdict in ("unknown", "partly_explained"))
     if found.verdict == "none":
-        assert found.something_else < 0.5
-    if found.verdict == "unknown":
-        assert all(chance < 0.5 for _, chance in found.ranked)
+        assert found.nothing > 0.3
     if found.verdict == "named":
         assert found.ranked[0][1] > 0.3
 

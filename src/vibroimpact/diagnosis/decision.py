@@ -35,17 +35,16 @@ class Decision:
     """A conclusion and its probabilities.
 
     ranked: hypotheses, one per set of effects, with their probabilities, most probable first.
-    nothing, something_else: probabilities. best: the most probable hypothesis, None if there is
-    none. rest: log power over the floor that the best leaves. share: of the log power over the
-    floor, that the best explains. by_free_runs: whether only spectra of free runs show it, see
-    free_search. surely_off: whether the spectra of a record are off with the best by more than
-    chance, see FreeRuns.surely_off.
+    nothing: probability. best: the most probable hypothesis, None if there is none. rest: log power
+    over the floor that the best leaves. share: of the log power over the floor, that the best
+    explains. by_free_runs: whether only spectra of free runs show it, see free_search. surely_off:
+    whether the spectra of a record are off with the best by more than chance, see
+    FreeRuns.surely_off.
     """
 
     verdict: Conclusion
     ranked: tuple[tuple[Hypothesis, float], ...]
     nothing: float
-    something_else: float
     rest: float
     share: float
     by_free_runs: bool = False
@@ -55,6 +54,18 @@ class Decision:
     def best(self) -> Hypothesis | None:
         """Return the most probable hypothesis."""
         return self.ranked[0][0] if self.ranked else None
+
+    @property
+    def open(self) -> float:
+        """Return the probability that is left: of other effects of the catalogue, not found, or of
+        an effect that it lacks.
+        """
+        return max(1.0 - self.nothing - sum(chance for _, chance in self.ranked), 0.0)
+
+    @property
+    def something_else(self) -> float:
+        """Return the probability of an effect that the catalogue lacks."""
+        return constants.LACKING * self.open
 
     @property
     def leading(self) -> list[tuple[Hypothesis, float]]:
@@ -91,16 +102,18 @@ def decide(
     no_effect = float(expit(constants.NULL_WIDTHS * (1.0 - sure / constants.NULL_GAIN)))
     nothing = no_effect * (1.0 - unexplained)
     share = max(best, 0.0) / max(best + max(rest, 0.0), 1.0e-12)
-    some = (1.0 - no_effect) * (1.0 - unexplained)
+    some = (1.0 - no_effect) * (1.0 - constants.LACKING * unexplained)
     width = constants.RIVAL + constants.RIVAL_SHARE * max(best, 0.0)
     chances = [
         (each, some * own) for each, own in zip(hypotheses, _odds(hypotheses, width), strict=True)
     ]
     chances.sort(key=lambda pair: -pair[1])
     ranked = tuple(pair for pair in chances if pair[1] > LEAST_SHOWN) or tuple(chances[:1])
-    return Decision(
-        _verdict(no_effect, unexplained, share, ranked), ranked, nothing, unexplained, rest, share
-    )
+    found = Decision("none", ranked, nothing, rest, share)
+    if found.open >= 0.5:
+        part = share >= constants.PARTLY and no_effect < 0.5
+        return replace(found, verdict="partly_explained" if part else "unknown")
+    return found if no_effect >= 0.5 else replace(found, verdict=conclusion(ranked))
 
 
 def _odds(hypotheses: Sequence[Hypothesis], width: float) -> list[float]:
@@ -126,14 +139,8 @@ def far_off(misfit: Mapping[str, float | None]) -> bool:
     return _above_floor(misfit) > constants.FREE_EXCESS_DB
 
 
-def counted(decision: Decision, misfits: Mapping[str, Any]) -> Mapping[str, float | None]:
-    """Return the distances of free runs that a Decision is judged by, of {fit, holdout}: of the
-    held-out records or, if nothing was added, of the records that are farther off: then none of
-    them took part.
-    """
-    known = [own for own in misfits.values() if own and own["before_dB"] is not None]
-    if decision.verdict == "none" and known:
-        return max(known, key=_above_floor)
+def counted(misfits: Mapping[str, Any]) -> Mapping[str, float | None]:
+    """Return the distances of free runs that an effect is judged by, of {fit, holdout}."""
     return misfits["holdout"] or misfits["fit"]
 
 
@@ -143,83 +150,56 @@ def _above_floor(misfit: Mapping[str, float | None]) -> float:
     return np.inf if after is None or floor is None else after - floor
 
 
+def share_right(misfit: Mapping[str, float | None]) -> float:
+    """Return the share of explanations that are right, of those that leave spectra of free runs as
+    far above their floor, 1 if these are missing; misfit: {after_dB, floor_dB}.
+    """
+    after, floor = misfit["after_dB"], misfit["floor_dB"]
+    if after is None or floor is None:
+        return 1.0
+    over = (after - floor) / (floor + constants.SPECTRA_DB) - constants.CHANCE_OVER
+    far = constants.RIGHT_FAR_OFF
+    return far + (1.0 - far) * float(np.exp(-max(over, 0.0) / constants.OVER_WIDTH))
+
+
 def beside_spectra(
-    decision: Decision,
-    misfit: Mapping[str, float | None],
-    parts: Sequence[Mapping[str, float | None]] = (),
-    farther: bool = True,
+    decision: Decision, misfits: Mapping[str, Any], farther: bool = True
 ) -> Decision:
     """Return the Decision given the distances of free runs.
 
-    "none" becomes "unknown" if spectra are far above their floor: some laws act on a motion that a
-    held run lacks, such as whirling. An effect that makes spectra worse, or that leaves most of a
-    large excess in most records, is refuted; if there was no excess, nothing is missing. An effect
-    that leaves spectra off by more than chance explains only a part.
+    Probabilities are those of explanations that leave spectra as far above their floor. If spectra
+    are far off as given, something is missing: some laws act on a motion that a held run lacks,
+    such as whirling. An effect that makes spectra worse is refuted; if there was no excess, nothing
+    is missing.
 
-    misfit: {before_dB, after_dB, floor_dB, closed_fraction} of held-out records, None if unknown.
-    parts: the same of each record and channel: in a record, or across the force, whirling may be
-    chance. farther: whether a record is farther off after completion by more than chance.
+    misfits: {fit, holdout}, each {before_dB, after_dB, floor_dB, closed_fraction} or None. farther:
+    whether a record is farther off after completion by more than chance.
     """
-    before, after, floor = misfit["before_dB"], misfit["after_dB"], misfit["floor_dB"]
-    if before is None or after is None or floor is None:
+    told, right = counted(misfits), share_right(counted(misfits))
+    if decision.verdict == "unknown":
         return decision
-    closed = misfit["closed_fraction"]
-    if decision.verdict == "none" and far_off(misfit):
-        return replace(
-            decision,
-            verdict="unknown",
-            nothing=decision.something_else,
-            something_else=decision.nothing,
-        )
-    if decision.verdict in ("none", "unknown"):
-        return decision
-    if makes_worse(misfit) and farther:
-        return refuted(decision, in_favour_of_nothing=closed is None)
-    far = after - floor > 2.0 * constants.FREE_EXCESS_DB and (closed or 0.0) < constants.PARTLY
-    far = far and _most_stay_off(parts or [misfit])
-    if decision.verdict == "partly_explained":
-        return decision
-    return refuted(decision) if far else _in_part(decision) if decision.surely_off else decision
-
-
-def _in_part(decision: Decision) -> Decision:
-    """Return the Decision whose hypotheses explain the discrepancy in part, or in full by another
-    law.
-    """
-    ranked = tuple((each, constants.RIGHT_BESIDE * chance) for each, chance in decision.ranked)
-    moved = sum(chance for _, chance in decision.ranked) - sum(chance for _, chance in ranked)
-    return replace(
-        decision,
-        verdict="partly_explained",
-        ranked=ranked,
-        something_else=decision.something_else + moved,
-    )
-
-
-def _most_stay_off(parts: Sequence[Mapping[str, float | None]]) -> bool:
-    """Return whether most parts whose spectra are far off before or after completion keep most of
-    their excess.
-    """
-    off = stay = 0
-    for row in parts:
-        before, after, floor = row["before_dB"], row["after_dB"], row["floor_dB"]
-        if before is None or after is None or floor is None:
-            continue
-        if max(before, after) - floor > constants.FREE_EXCESS_DB:
-            off += 1
-            stay += (row["closed_fraction"] or 0.0) < constants.PARTLY
-    return 2 * stay > off
+    if decision.verdict == "none":
+        known = (own for own in misfits.values() if own and own["before_dB"] is not None)
+        right = 0.0 if any(map(far_off, known)) else constants.RIGHT_NOTHING * right
+    elif told["before_dB"] is not None and makes_worse(told) and farther:
+        return refuted(decision, in_favour_of_nothing=told["closed_fraction"] is None)
+    ranked = tuple((each, right * chance) for each, chance in decision.ranked)
+    found = replace(decision, ranked=ranked, nothing=right * decision.nothing)
+    if found.open < 0.5:
+        return found
+    part = decision.verdict != "none" and (told["closed_fraction"] or 0.0) >= constants.PARTLY
+    return replace(found, verdict="partly_explained" if part else "unknown")
 
 
 def refuted(decision: Decision, in_favour_of_nothing: bool = False) -> Decision:
-    """Return the Decision whose best hypothesis is refuted: its probability goes to something else,
-    or to nothing.
+    """Return the Decision whose best hypothesis is refuted: its probability is open, or goes to
+    nothing.
     """
     chance = decision.ranked[0][1]
     left = replace(decision, ranked=decision.ranked[1:])
-    if in_favour_of_nothing and decision.something_else < 0.5:
+    if in_favour_of_nothing and decision.open < 0.5:
         return replace(left, verdict="none", nothing=decision.nothing + chance)
-    return replace(left, verdict="unknown", something_else=decision.something_else + chance)
+    return replace(left, verdict="unknown")
 
 
 def _superfluous(
@@ -232,18 +212,6 @@ def _superfluous(
         and hypothesis.sure_gain_over(other) < needed(other.worth)
         for other in others
     )
-
-
-def _verdict(
-    no_effect: float, unexplained: float, share: float, ranked: Sequence[tuple[Hypothesis, float]]
-) -> Conclusion:
-    """Return the conclusion from probabilities."""
-    if unexplained >= 0.5:
-        part = share >= constants.PARTLY and no_effect < 0.5
-        return "partly_explained" if part else "unknown"
-    if no_effect >= 0.5:
-        return "none"
-    return conclusion(ranked)
 
 
 def conclusion(ranked: Sequence[tuple[Hypothesis, float]]) -> Conclusion:

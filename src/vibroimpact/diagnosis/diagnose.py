@@ -388,17 +388,11 @@ def _concluded(
 
 def _verified(found: Grounds, misfits: dict[str, Any]) -> Decision:
     """Return the Decision given the distances of free runs; misfits: of the splits."""
-    told, signals = counted(found.decision, misfits), found.runs.signals
+    signals = found.runs.signals
     if isinstance(found.own, Comparison):
-        channels = range(len(signals.names))
-        each = [
-            found.runs.distance([record], k)
-            for record in range(len(signals.load))
-            for k in channels
-        ]
         records = signals.holdout() if len(signals.holdout()) else signals.fit()
-        return beside_spectra(found.decision, told, each, found.runs.farther(records))
-    worse = found.chosen is not None and makes_worse(told)
+        return beside_spectra(found.decision, misfits, found.runs.farther(records))
+    worse = found.chosen is not None and makes_worse(counted(misfits))
     return refuted(found.decision) if worse else found.decision
 
 

@@ -88,7 +88,7 @@ def summary(verdict: Verdict) -> list[str]:
     ]
     shares = {"nothing": verdict.probability_none}
     shares |= {" + ".join(row.ids): row.probability for row in verdict.ranking}
-    shares["something else"] = verdict.probability_something_else
+    shares["something that the catalogue lacks"] = verdict.probability_something_else
     lines += [f"  {chance:6.1%}  {name}" for name, chance in shares.items() if chance]
     lines += [f" {told}" for told in [not_run_sentence(verdict.not_run)] if told]
     apart = verdict.misfit.holdout

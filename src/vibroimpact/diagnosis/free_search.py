@@ -96,7 +96,6 @@ def free_search(
         verdict=conclusion(ranked),
         ranked=ranked,
         nothing=0.0,
-        something_else=1.0 - closed,
         by_free_runs=True,
     )
     runs = runs.completed(ranked[0][0].point)

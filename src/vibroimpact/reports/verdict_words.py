@@ -14,6 +14,7 @@ from vibroimpact.io.display_units import display_unit
 from .number_text import digits, percent
 
 NOTHING = "nothing is missing"
+OTHERS = "others of the catalogue, not found"
 LEAST_SHOWN = 0.005
 SURE = 0.5  # above it an explanation speaks against a verdict that does not name it
 
@@ -22,7 +23,7 @@ SURE = 0.5  # above it an explanation speaks against a verdict that does not nam
 class Explanation:
     """An explanation in words with its probability.
 
-    told: whether the verdict names it. open: nothing, or something else.
+    told: whether the verdict names it. open: nothing, something else, or others.
     """
 
     words: str
@@ -61,6 +62,9 @@ def explanations_of(verdict: Verdict) -> list[Explanation]:
     ):
         if chance is not None:
             rows.append(Explanation(words, chance, open=True))
+    left = 1.0 - sum(known.values()) - sum(row.probability for row in rows if row.open)
+    if known and left >= LEAST_SHOWN and verdict.probability_none is not None:
+        rows.append(Explanation(OTHERS, left, open=True))
     rows.sort(key=lambda row: -row.probability)
     return rows if _agree(verdict, rows) else []
 
