@@ -9,8 +9,8 @@ DAMPING_SD = 0.15
 GAIN_SD = 0.02
 TURN_SD = 0.0175  # rad: one degree, of the direction of the force
 # Of a fitted value, as a share of its change from the neutral value: the difference of two codes of
-# one structure, measured on 45 effects named in development campaigns.
-VALUE_SD = 0.04
+# one structure, measured on 16 effects named in two draws.
+VALUE_SD = 0.03
 
 STRENGTH = 5.0  # of the dampers, over the impedance of the structure at its sensors
 # Of that: a record is held with the strongest that holds it. Sensors see more modes than dampers
@@ -41,7 +41,7 @@ NULL_GAIN = 0.16
 NULL_WIDTHS = 6.0  # e-folds of the odds of nothing between no gain and NULL_GAIN
 # Difference of rivals that counts e-fold, and an addition to it as a share of the gain.
 RIVAL, RIVAL_SHARE = 0.02, 0.04
-REST, REST_WIDTH = 1.25, 0.15  # log power over the floor: something else is as likely as not
+REST, REST_WIDTH = 1.7, 0.25  # log power over the floor: something else is as likely as not
 # Excess in dB of the spectra of free runs over their floor, with which something is missing, even
 # if the holding force shows nothing.
 FREE_EXCESS_DB = 1.5
