@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from vibroimpact.diagnosis.constants import RIGHT_FAR_OFF, RIGHT_NOTHING
+from vibroimpact.diagnosis.constants import RIGHT_UNSEEN
 from vibroimpact.diagnosis.decision import ambiguity, beside_spectra, decide
 from vibroimpact.diagnosis.explanations import Point, Term
 from vibroimpact.diagnosis.search import Hypothesis, Search
@@ -87,13 +87,13 @@ def beside(decision, told, fit=None, farther=True):
 
 
 @pytest.mark.parametrize(
-    ("before", "verdict"), [(1.2, "none"), (1.9, "unknown"), (4.6, "unknown"), (None, "none")]
+    ("before", "verdict"), [(1.2, "none"), (2.3, "unknown"), (4.6, "unknown"), (None, "none")]
 )
 def test_nothing_is_not_said_beside_spectra_that_are_far_off(before, verdict):
     found = beside(decided(), misfit(before, before))
     assert found.verdict == verdict
     assert (found.nothing > 0.5) == (verdict == "none") == (found.open < 0.5)
-    assert found.nothing <= RIGHT_NOTHING
+    assert found.nothing <= RIGHT_UNSEEN
 
 
 def test_nothing_is_not_said_beside_fitted_records_that_are_far_off():
@@ -102,18 +102,19 @@ def test_nothing_is_not_said_beside_fitted_records_that_are_far_off():
     assert beside(decided(hypothesis(1.0, "gap@all")), near, fit=far).verdict == "named"
 
 
-def test_probabilities_fall_with_what_spectra_keep_above_their_floor():
+def test_probabilities_fall_with_the_excess_that_spectra_keep():
     named = decided(hypothesis(1.5, "contact_damping@all"))
-    chances = [beside(named, misfit(16.0, after)).ranked[0][1] for after in (1.0, 1.4, 2.0, 6.0)]
+    chances = [beside(named, misfit(16.0, after)).ranked[0][1] for after in (1.0, 3.0, 5.0, 9.0)]
     assert sorted(chances, reverse=True) == chances
-    assert chances[0] > 0.98 and chances[-1] == pytest.approx(RIGHT_FAR_OFF, abs=0.02)
+    assert chances[0] > 0.95 and chances[-1] < 0.3
+    assert beside(named, misfit(1.2, 1.2)).ranked[0][1] > 0.8  # hardly an excess to close
 
 
-@pytest.mark.parametrize(("before", "verdict"), [(16.0, "partly_explained"), (8.0, "unknown")])
+@pytest.mark.parametrize(("before", "verdict"), [(14.0, "partly_explained"), (8.0, "unknown")])
 def test_an_effect_that_leaves_spectra_far_off_is_not_named(before, verdict):
     found = beside(decided(hypothesis(1.5, "contact_damping@all")), misfit(before, 6.0))
     assert found.verdict == verdict and found.best.ids == ("contact_damping",)
-    assert found.open > 0.5 > found.something_else
+    assert found.open > max(0.5, found.something_else)
 
 
 def test_an_effect_that_spoils_spectra_without_excess_is_nothing():
@@ -122,7 +123,7 @@ def test_an_effect_that_spoils_spectra_without_excess_is_nothing():
 
 
 def test_an_effect_that_spoils_spectra_by_chance_is_not_refuted():
-    named, spoiled = decided(hypothesis(1.5, "contact_damping@all")), misfit(1.3, 1.6)
+    named, spoiled = decided(hypothesis(1.5, "contact_damping@all")), misfit(1.2, 1.35)
     assert beside(named, spoiled).verdict == "unknown"
     assert beside(named, spoiled, farther=False).verdict == "named"
 

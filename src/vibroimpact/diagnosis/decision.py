@@ -150,16 +150,22 @@ def _above_floor(misfit: Mapping[str, float | None]) -> float:
     return np.inf if after is None or floor is None else after - floor
 
 
-def share_right(misfit: Mapping[str, float | None]) -> float:
-    """Return the share of explanations that are right, of those that leave spectra of free runs as
-    far above their floor, 1 if these are missing; misfit: {after_dB, floor_dB}.
+def share_right(misfit: Mapping[str, float | None], added: bool) -> float:
+    """Return the share of explanations that are right, of those beside which spectra of free runs
+    look alike: by what these are above their floor, over the floor, and by the share of their
+    excess that an effect closes.
+
+    misfit: {after_dB, floor_dB, closed_fraction}. added: whether an effect is.
     """
-    after, floor = misfit["after_dB"], misfit["floor_dB"]
+    after, floor, closed = (misfit[key] for key in ("after_dB", "floor_dB", "closed_fraction"))
     if after is None or floor is None:
-        return 1.0
-    over = (after - floor) / (floor + constants.SPECTRA_DB) - constants.CHANCE_OVER
-    far = constants.RIGHT_FAR_OFF
-    return far + (1.0 - far) * float(np.exp(-max(over, 0.0) / constants.OVER_WIDTH))
+        return constants.RIGHT_UNSEEN
+    over = (after - floor) / (floor + constants.SPECTRA_DB)
+    if added:
+        half, width = constants.CLOSED_HALF
+        return float(expit((max(closed or 0.0, 1.0 - over) - half) / width))
+    half, width = constants.OVER_HALF
+    return constants.RIGHT_UNSEEN * float(expit((half - over) / width))
 
 
 def beside_spectra(
@@ -167,20 +173,21 @@ def beside_spectra(
 ) -> Decision:
     """Return the Decision given the distances of free runs.
 
-    Probabilities are those of explanations that leave spectra as far above their floor. If spectra
-    are far off as given, something is missing: some laws act on a motion that a held run lacks,
+    Probabilities are those of explanations beside which spectra look alike. If spectra are far off
+    as given, something is missing: some laws act on a motion that a held run lacks,
     such as whirling. An effect that makes spectra worse is refuted; if there was no excess, nothing
     is missing.
 
     misfits: {fit, holdout}, each {before_dB, after_dB, floor_dB, closed_fraction} or None. farther:
     whether a record is farther off after completion by more than chance.
     """
-    told, right = counted(misfits), share_right(counted(misfits))
+    told = counted(misfits)
     if decision.verdict == "unknown":
         return decision
+    right = share_right(told, decision.verdict != "none")
     if decision.verdict == "none":
         known = (own for own in misfits.values() if own and own["before_dB"] is not None)
-        right = 0.0 if any(map(far_off, known)) else constants.RIGHT_NOTHING * right
+        right = 0.0 if any(map(far_off, known)) else right
     elif told["before_dB"] is not None and makes_worse(told) and farther:
         return refuted(decision, in_favour_of_nothing=told["closed_fraction"] is None)
     ranked = tuple((each, right * chance) for each, chance in decision.ranked)
