@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from vibroimpact.diagnosis.constants import RIGHT_UNSEEN
-from vibroimpact.diagnosis.decision import ambiguity, beside_spectra, decide
+from vibroimpact.diagnosis.decision import ambiguity, beside_spectra, decide, weighed
 from vibroimpact.diagnosis.explanations import Point, Term
 from vibroimpact.diagnosis.search import Hypothesis, Search
 from vibroimpact.diagnosis.verdict.misfit import closed_fraction
@@ -108,6 +108,16 @@ def test_probabilities_fall_with_the_excess_that_spectra_keep():
     assert sorted(chances, reverse=True) == chances
     assert chances[0] > 0.95 and chances[-1] < 0.3
     assert beside(named, misfit(1.2, 1.2)).ranked[0][1] > 0.8  # hardly an excess to close
+
+
+def test_rivals_are_told_apart_by_their_own_spectra():
+    one, other = hypothesis(2.0, "saturation_stiffness@arc_1_0mm"), hypothesis(1.97, "gap@left")
+    given = decided(one, other)
+    assert given.verdict == "ambiguous" and given.rivals == [one, other]
+    found = weighed(given, [0.1, 0.9])
+    assert found.verdict == "named" and found.best is other
+    assert found.open == pytest.approx(given.open)
+    assert weighed(given, [0.0, 0.0]).best is one
 
 
 @pytest.mark.parametrize(("before", "verdict"), [(14.0, "partly_explained"), (8.0, "unknown")])

@@ -68,6 +68,12 @@ class Decision:
         return constants.LACKING * self.open
 
     @property
+    def rivals(self) -> list[Hypothesis]:
+        """Return the hypotheses that are not far less probable than the best."""
+        least = constants.RIVAL_CHANCE * self.ranked[0][1] if self.ranked else 0.0
+        return [each for each, chance in self.ranked[: constants.RIVALS_RUN] if chance >= least]
+
+    @property
     def leading(self) -> list[tuple[Hypothesis, float]]:
         """Return the most probable hypotheses that make NAMED of the probability of all."""
         total, out = sum(chance for _, chance in self.ranked), []
@@ -166,6 +172,20 @@ def share_right(misfit: Mapping[str, float | None], added: bool) -> float:
         return float(expit((max(closed or 0.0, 1.0 - over) - half) / width))
     half, width = constants.OVER_HALF
     return constants.RIGHT_UNSEEN * float(expit((half - over) / width))
+
+
+def weighed(decision: Decision, shares: Sequence[float]) -> Decision:
+    """Return the Decision whose rivals share their probability by what each had, times a share."""
+    count = len(shares)
+    chances = np.array([chance for _, chance in decision.ranked[:count]])
+    weight = chances * np.maximum(shares, np.finfo(float).tiny)
+    new = map(float, chances.sum() * weight / weight.sum())
+    pairs = [(each, chance) for (each, _), chance in zip(decision.ranked, new, strict=False)]
+    ranked = tuple(sorted([*pairs, *decision.ranked[count:]], key=lambda pair: -pair[1]))
+    named = decision.verdict in ("named", "ambiguous")
+    return replace(
+        decision, ranked=ranked, verdict=conclusion(ranked) if named else decision.verdict
+    )
 
 
 def beside_spectra(

@@ -36,6 +36,8 @@ from .decision import (
     decide,
     gains,
     refuted,
+    share_right,
+    weighed,
 )
 from .evidence import evidence_of
 from .explanations import Structure
@@ -221,13 +223,20 @@ def _run_free(
 ) -> tuple[Decision, FreeRuns]:
     """Return (Decision on a Search, FreeRuns with its best hypothesis).
 
-    If spectra are surely off with the best hypothesis, an effect is missing: then it may gain
-    little, if it brings them as near as chance allows.
+    Rivals share their probability by the spectra of their own free runs, too. If spectra are surely
+    off with the best hypothesis, an effect is missing: then it may gain little, if it brings them
+    as near as chance allows.
     """
     decision = decide(searched, *levels)
-    if (best := added(decision)) is None:
+    if added(decision) is None:
         return decision, runs
-    runs = runs.completed(best.point)
+    own = {each.point: runs.completed(each.point) for each in decision.rivals}
+    if len(own) > 1:
+        shares = [share_right(counted(_misfits(each)), True) for each in own.values()]
+        log("rivals, by spectra: " + ", ".join(f"{share:.2f}" for share in shares))
+        decision = weighed(decision, shares)
+    best = decision.ranked[0][0]
+    runs = own[best.point]
     if not runs.surely_off():
         return decision, runs
     wider = decide(searched, *levels, needed=lambda gained: LEAST_GAIN)
@@ -353,7 +362,7 @@ def _concluded(
     """
     misfits, effects, withdrawn = _misfits(found.runs), _effects(found), None
     decision = _verified(found, misfits)
-    if decision.best is not found.decision.best and found.runs.structure is not None:
+    if decision.verdict != found.decision.verdict and found.runs.structure is not None:
         found = replace(found, runs=found.runs.repeated())
         misfits = _misfits(found.runs)
         decision = _verified(found, misfits)
