@@ -42,6 +42,15 @@ def test_dissipation_by_which_right_codes_differ_is_no_effect(comparison, effect
         assert within_priors(term, comparison.signals.rate, sizes) == within
 
 
+def test_damping_that_nuisances_undo_is_no_effect(comparison):
+    """It would be that of modes above the band alone."""
+    rate, sizes = comparison.signals.rate, comparison.sizes
+    term = Term("modal_damping", "all", (1.97,))
+    for damping, within in (((), False), ((0.1, -0.1), False), ((-0.6, -0.4), True)):
+        [net] = Point((term,), damping=damping).net_terms
+        assert within_priors(net, rate, sizes) == within
+
+
 def test_few_trials_of_an_effect_are_all_tried_again():
     """What gained most before another effect was known may be the wrong value."""
     few = [Term("gap", "all", (value,)) for value in (0.4, 0.65, 1.5, 2.5)]

@@ -26,7 +26,7 @@ KEPT_MODELS = 256
 # Records are compared at a sampling frequency of so much at least, and so many times the first
 # mode, or at their own.
 SLOWEST_HZ, PER_FIRST_MODE = 2000.0, 20.0
-TURNED = "force_misalignment"
+TURNED, DAMPED = "force_misalignment", "modal_damping"
 SEEN = 1.0e-3  # of the largest shape at a sensor or force: a smaller one is not seen
 # Modes are kept to so many times the sampling frequency of the records, in free runs and in held
 # ones: the others change the holding force of a right model by a per cent of its power.
@@ -83,6 +83,17 @@ class Point:
     def ids(self) -> list[str]:
         """Return the ids of the effects as they are reported."""
         return [term.effect.reported for term in self.terms]
+
+    @property
+    def net_terms(self) -> tuple[Term, ...]:
+        """Return the terms, a common factor of the damping times the mean one of the nuisances:
+        where these undo it, only modes above the band are damped, by which a right model gains too.
+        """
+        mean = float(np.exp(np.mean(self.damping or (0.0,))))
+        return tuple(
+            replace(term, values=(term.values[0] * mean,)) if term.effect_id == DAMPED else term
+            for term in self.terms
+        )
 
     def with_own_gains(self, names: Sequence[str]) -> Point:
         """Return the Point with the nuisance gain of a channel merged into its sensor_gain, if it

@@ -489,7 +489,8 @@ def _kept(at: _Benches, found: Sequence[Hypothesis], nothing: Hypothesis) -> lis
     rate, sizes = at.comparison.signals.rate, at.comparison.sizes
     out = []
     for each in found:
-        terms = tuple(term for term in each.point.terms if not within_priors(term, rate, sizes))
+        net = zip(each.point.terms, each.point.net_terms, strict=True)
+        terms = tuple(term for term, own in net if not within_priors(own, rate, sizes))
         if terms and len(terms) < len(each.point.terms):
             [each] = _finals(at, [replace(each.point, terms=terms)], nothing) or [each]
         if terms and np.isfinite(each.gain) and not one_law(terms, sizes["tube_length"]):
