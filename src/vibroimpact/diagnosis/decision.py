@@ -169,7 +169,8 @@ def share_right(misfit: Mapping[str, float | None], added: bool) -> float:
     over = (after - floor) / (floor + constants.SPECTRA_DB)
     if added:
         half, width = constants.CLOSED_HALF
-        return float(expit((max(closed or 0.0, 1.0 - over) - half) / width))
+        part = min(max(closed or 0.0, 1.0 - over), 1.0)
+        return float(expit((part - half) / width))
     half, width = constants.OVER_HALF
     return constants.RIGHT_UNSEEN * float(expit((half - over) / width))
 
