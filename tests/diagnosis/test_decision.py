@@ -96,7 +96,7 @@ def test_nothing_is_not_said_beside_spectra_that_are_far_off(before, verdict):
     assert found.nothing <= RIGHT_UNSEEN
 
 
-def test_nothing_is_not_said_beside_fitted_records_that_are_far_off():
+def test_nothing_is_not_said_beside_far_fitted_records():
     near, far = misfit(1.2, 1.2), misfit(5.3, 5.3)
     assert beside(decided(), near, fit=far).verdict == "unknown"
     assert beside(decided(hypothesis(1.0, "gap@all")), near, fit=far).verdict == "named"
