@@ -34,10 +34,10 @@ LEAST_GAIN, LEAST_SHARE = 0.05, 0.05
 LEFT = 1.0
 
 # Decision: gains in mean log power on stretches that took no part.
-# Largest gain of a wrong effect where nothing is missing, on some 30 campaigns. A gain, less two
-# standard errors, that is as large is as likely by nothing; an error counts no more than that: a
+# Where nothing is missing, wrong effects gain up to 0.06, on 14 campaigns of three draws. A gain,
+# less two standard errors, of this is as likely by nothing; an error counts no more than that: a
 # gain in a few channels or bands differs from band to band, and is none the less sure for it.
-NULL_GAIN = 0.16
+NULL_GAIN = 0.1
 NULL_WIDTHS = 6.0  # e-folds of the odds of nothing between no gain and NULL_GAIN
 # Difference of rivals that counts e-fold, and an addition to it as a share of the gain.
 RIVAL, RIVAL_SHARE = 0.02, 0.04
