@@ -51,11 +51,11 @@ LEFT_SHARE = 0.2  # of an excess that a right explanation may leave: laws of two
 # close so much, and the difference that counts e-fold. Of 76 in eleven draws, 33 of 34 that closed
 # 0.94 were right, 19 of 25 from 0.7 on, four of 17 below.
 CLOSED_HALF, SPECTRA_DB = (0.7, 0.08), 0.3
-# Rivals of the best, by the chance of the best, that run free too, and their number at most.
-RIVAL_CHANCE, RIVALS_RUN = 0.05, 4
 # The same of verdicts "none", by what spectra are above their floor. Weak effects hide: of those
 # near it, RIGHT_UNSEEN.
 OVER_HALF, RIGHT_UNSEEN = (0.9, 0.25), 0.9
+# Rivals of the best, by the chance of the best, that run free too, and their number at most.
+RIVAL_CHANCE, RIVALS_RUN = 0.05, 4
 # Of what stays open, the share that the catalogue lacks: of 23 campaigns without a name, in nine.
 LACKING = 0.6
 FREE_RIVAL_DB = 1.0  # difference of rivals by free runs that counts e-fold

@@ -142,18 +142,13 @@ def far_off(misfit: Mapping[str, float | None]) -> bool:
     """Return whether spectra of free runs are far above their floor after completion, or missing;
     misfit: {after_dB, floor_dB}.
     """
-    return _above_floor(misfit) > constants.FREE_EXCESS_DB
+    after, floor = misfit["after_dB"], misfit["floor_dB"]
+    return after is None or floor is None or after - floor > constants.FREE_EXCESS_DB
 
 
 def counted(misfits: Mapping[str, Any]) -> Mapping[str, float | None]:
     """Return the distances of free runs that an effect is judged by, of {fit, holdout}."""
     return misfits["holdout"] or misfits["fit"]
-
-
-def _above_floor(misfit: Mapping[str, float | None]) -> float:
-    """Return by how much spectra are above their floor after completion, dB; inf if missing."""
-    after, floor = misfit["after_dB"], misfit["floor_dB"]
-    return np.inf if after is None or floor is None else after - floor
 
 
 def share_right(misfit: Mapping[str, float | None], added: bool) -> float:

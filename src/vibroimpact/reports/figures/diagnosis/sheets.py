@@ -27,7 +27,7 @@ NONE_KNOWN = "no probabilities are known that the verdict stands by"
 CAPTION = (
     "Probability of each explanation among all that are shown, given the records and the prior"
     " probabilities; the places of one effect together. Orange: the named one, or all that are not"
-    " distinguished. Grey: nothing, something {rest}, and others of it.{left_out}"
+    " distinguished. Grey: nothing, others, and something {rest}.{left_out}"
 )
 
 
