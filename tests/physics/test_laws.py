@@ -58,22 +58,37 @@ def test_elastic_stop_returns_the_launch_speed():
     assert rebound(trace(launched(), 0.012)) == pytest.approx(1.0, abs=1e-4)
 
 
-@pytest.mark.parametrize("ratio", [0.05, 0.2, 0.5])
-def test_kelvin_voigt_restitution_and_no_pull(ratio):
+OMEGA = 1e3  # rad/s, of a mass of 1 kg on a contact stiffness of 1e6 N/m
+
+
+def restitution(ratio):
     """Speed at which k p + c dp/dt comes back to 0 on the exact motion p'' + 2 zeta w p' + w² p = 0
     from p = 0, p' = 1.
     """
-    mass, stiffness = 1.0, 1e6
-    omega = np.sqrt(stiffness / mass)
-    damped = omega * np.sqrt(1.0 - ratio**2)
-    run = trace(launched(damping=2.0 * ratio * omega * mass), 0.012, rate=1_000_000)
+    damped = OMEGA * np.sqrt(1.0 - ratio**2)
     time = np.linspace(0.0, np.pi / damped, 2_000_001)
-    decay = np.exp(-ratio * omega * time)
+    decay = np.exp(-ratio * OMEGA * time)
     depth = decay * np.sin(damped * time) / damped
-    speed = decay * (np.cos(damped * time) - ratio * omega / damped * np.sin(damped * time))
-    ends = np.argmax((omega**2 * depth + 2.0 * ratio * omega * speed)[1:] < 0.0)
-    assert rebound(run) == pytest.approx(-speed[ends], abs=2e-3)
+    speed = decay * (np.cos(damped * time) - ratio * OMEGA / damped * np.sin(damped * time))
+    ends = np.argmax((OMEGA**2 * depth + 2.0 * ratio * OMEGA * speed)[1:] < 0.0)
+    return -speed[ends]
+
+
+@pytest.mark.parametrize("ratio", [0.05, 0.2, 0.5])
+def test_kelvin_voigt_restitution_and_no_pull(ratio):
+    run = trace(launched(damping=2.0 * ratio * OMEGA), 0.012, rate=1_000_000)
+    assert rebound(run) == pytest.approx(restitution(ratio), abs=2e-3)
     assert run.contact_force.max() == 0.0  # towards the stop never
+
+
+@pytest.mark.parametrize("ratio", [0.05, 0.2])
+def test_damper_of_a_stop_in_few_steps(ratio):
+    """Ten steps a contact, in the mean over where in a step the stop is met: the loss of speed."""
+    rate = 10.0 * OMEGA / np.pi
+    gaps = (4.0 + (np.arange(20) + 0.5) / 20) / rate  # at 1 m/s
+    stops = [launched(damping=2.0 * ratio * OMEGA, gap=gap) for gap in gaps]
+    speeds = [rebound(trace(stop, 0.012, rate)) for stop in stops]
+    assert 1.0 - np.mean(speeds) == pytest.approx(1.0 - restitution(ratio), rel=0.03)
 
 
 @pytest.mark.parametrize("alpha", [0.05, 0.2, 0.8])

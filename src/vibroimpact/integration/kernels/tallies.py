@@ -7,7 +7,7 @@ from .decimation import project_channels
 from .force_laws import (
     normal_force,
     penetration,
-    penetration_rate,
+    penetration_motion,
     radial_offset,
     tangential_slip,
 )
@@ -163,8 +163,8 @@ def tally_laws(modal, contact, laws, state, tally, work):
         u1, u2, friction = load(work.u, r1), load(work.u, r2), load(work.friction_force, k)
         n1, n2, length, p = penetration(contact, laws, k, u1, u2)
         if any_lane(p > 0.0):
-            p_rate = penetration_rate(modal, state, n1, n2, u1, u2, r1, r2)
-            normal = normal_force(laws, k, p, p_rate, modal.dt) * length
+            motion = penetration_motion(modal, state, n1, n2, p, u1, u2, r1, r2)
+            normal = normal_force(laws, k, motion, modal.dt) * length
             slip = tangential_slip(state, n1, n2, length, u1, u2, r1, r2)
             spring = friction - load(state.friction_force, k)
             slip = fma(spring, load(laws.stick_flexibility, k), slip)
