@@ -49,6 +49,18 @@ def test_what_rings_above_the_band_bears_no_force_within_it(bench):
     assert np.mean(np.abs(lines) ** 2) < 2e-4 * np.mean(np.abs(free) ** 2)
 
 
+def test_a_constant_force_rests_against_a_support_from_the_start(bench):
+    """Dampers let a structure creep to its place: the run would begin with a force of its own."""
+    model = bench.structure.model(Point((Term("preload", "left", (0.0, 100.0)),)))
+    still = [
+        replace(run, force=np.zeros_like(run.force), motion=np.zeros_like(run.motion))
+        for run in runs_of(bench, model)
+    ]
+    pressed = np.abs(hold(still, bench.schedule).support_force).max(axis=1)[:, 10:]  # of the filter
+    assert pressed.min() > 1.0
+    np.testing.assert_allclose(pressed, pressed[:, -1:].repeat(pressed.shape[1], 1), rtol=5e-3)
+
+
 def test_held_motion_follows_the_impacts(bench):
     """The model predicts the measured waveform, which a free run does not for long."""
     model, up = (

@@ -22,7 +22,7 @@ import numpy as np
 
 from vibroimpact.reduction.modal_model import ModalModel
 
-from .batch import Run, Schedule, start_amplitudes, start_state
+from .batch import Run, Schedule, rest_state, start_amplitudes, start_state
 from .contact_convergence import CONTRACTION_LIMIT, IntegrationError, checked_contraction
 from .entry_points import HALF
 from .kernel_layout import MODE_COEFFICIENTS, ModalLayout, aligned
@@ -170,10 +170,10 @@ class _Prepared:
         return checked_contraction(model, self.schedule.steps_per_second, self.schedule.scheme)
 
     def _rest(self, model, gap):
-        """Return (offset (contact_point, 2), modal amplitudes (mode,) at rest or None)."""
-        offset, rest = seated(
-            model, self.schedule, np.array([gap]), np.zeros((*model.centre_offset.shape, 1))
-        )
+        """Return (offset (contact_point, 2), modal amplitudes (mode,) at rest or None for zero)."""
+        where = model, self.schedule, np.array([gap])
+        offset, rest = seated(*where, np.zeros((*model.centre_offset.shape, 1)))
+        rest = rest_state(*where, offset, rest)
         return offset[..., 0], None if rest is None else rest[:, 0]
 
     def _signature(self, model):
@@ -362,13 +362,14 @@ class HeldRun(Run):
         return out
 
     def begin(self, initial: np.ndarray | None) -> None:
-        """Start at rest against the obstacles that press; `initial` is ignored."""
+        """Start at rest under constant forces and obstacles that press; `initial` is ignored."""
         sensors = self.hold.channel
         for lane, (_, rest) in enumerate(self.places):
             if rest is not None:
                 own = self.layouts[lane]
                 state, amplitudes = own.state(), np.outer(rest, np.ones(LANES))
                 still = np.zeros((own.drive_shapes.shape[1], self.lanes))
+                still[own.model.drive_shapes.shape[1] :] = 1.0  # the dead load
                 fluid = own.fluid(own.modal(self.dt), self.lanes)
                 start_state(
                     *(own, own.modal(self.dt), self.contact, self.laws, fluid),
