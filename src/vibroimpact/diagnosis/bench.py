@@ -13,9 +13,10 @@ from vibroimpact.config.problems import ConfigError
 from vibroimpact.diagnosis.run_cost import count_simulated
 from vibroimpact.integration.batch import Schedule
 from vibroimpact.integration.held_run import HeldLane, hold
+from vibroimpact.integration.preload import OUT_OF_REACH_M
 from vibroimpact.reduction.modal_model import ModalModel
 
-from .constants import FORGET_S, INDEPENDENT
+from .constants import FORGET_S, INDEPENDENT, MODEL_ERROR
 from .explanations import Point, Structure
 from .measurement.sensor_chain import Measuring
 from .measurement.stretches import Stretch
@@ -140,20 +141,36 @@ def holding_lines(bench: Bench, points: Sequence[Point]) -> np.ndarray:
     It is multiplied by the gain of the channel, which makes it a residual of the measured values.
     NaN for a Point that could not be run.
     """
-    first, channels = int(FORGET_S * bench.schedule.sampling_frequency), len(bench.structure.names)
-    inside = _inside(bench, _frequencies(bench))
-    shape = (len(points), len(bench.stretches), channels, int(inside.sum()))
-    out = np.full(shape, np.nan, np.complex64)
+    shape = (len(bench.structure.names), len(compared_frequencies(bench)))
+    out = np.full((len(points), len(bench.stretches), *shape), np.nan, np.complex64)
     runs, index = _runs(bench, points)
     if not runs:
         return out
     count_simulated(len(runs))
-    force = hold(runs, bench.schedule, bench.threads, bench.held_below_Hz).force[..., first:]
-    window = np.hanning(force.shape[-1]).astype(force.dtype)  # single precision, as the force
-    found = fft.rfft(force * window, axis=-1)[..., inside]
-    out[index >= 0] = found[index[index >= 0]]
+    out[index >= 0] = _lines_of(bench, runs)[index[index >= 0]]
     gain = np.stack([bench.structure.measuring(point).gain for point in points])
     return out * gain[:, None, :, None].astype(np.float32)
+
+
+def _lines_of(bench: Bench, runs: Sequence[HeldLane]) -> np.ndarray:
+    """Return (run, channel, line) complex: the spectrum of the holding force of runs."""
+    first = int(FORGET_S * bench.schedule.sampling_frequency)
+    force = hold(runs, bench.schedule, bench.threads, bench.held_below_Hz).force[..., first:]
+    window = np.hanning(force.shape[-1]).astype(force.dtype)  # single precision, as the force
+    return fft.rfft(force * window, axis=-1)[..., _inside(bench, _frequencies(bench))]
+
+
+def with_model_error(bench: Bench) -> Bench:
+    """Return the Bench whose stretches know the error of a right model: MODEL_ERROR of the lines
+    that the contact of the model as given makes.
+    """
+    model, chain = bench.structure.held_model(Point()), bench.structure.measuring(Point())
+    free = replace(model, contact_laws=model.contact_laws.with_columns(gap=OUT_OF_REACH_M))
+    runs = [lane_of(bench, own, each, chain) for each in (model, free) for own in bench.stretches]
+    touching, apart = np.split(_lines_of(bench, runs), 2)
+    power = np.nan_to_num(MODEL_ERROR**2 * _power(touching - apart))
+    pairs = zip(bench.stretches, power, strict=True)
+    return replace(bench, stretches=tuple(replace(own, error=error) for own, error in pairs))
 
 
 def _frequencies(bench: Bench) -> np.ndarray:
@@ -180,9 +197,10 @@ def holds(bench: Bench, modes: int) -> np.ndarray:
     impacts drive them apart.
     """
     lines = holding_lines(bench, [Point(), Point(frequency=(NUDGE,) * modes)])
-    apart = (lines[1] - lines[0]) * whitening(bench, _free_lines(bench))
-    power = np.sum(np.abs(apart) ** 2, axis=(1, 2)) / counts(bench, lines[0]).sum(axis=(1, 2))
-    return np.nan_to_num(power, nan=np.inf) < LOST
+    free = np.maximum(_power(_free_lines(bench)), np.finfo(float).tiny)
+    number = counts(bench, lines[0])
+    power = np.sum(number * _power(lines[1] - lines[0]) / free, axis=(1, 2))
+    return np.nan_to_num(power / number.sum(axis=(1, 2)), nan=np.inf) < LOST
 
 
 def _free_lines(bench: Bench) -> np.ndarray:
@@ -210,11 +228,19 @@ def band_edges(lines: int) -> np.ndarray:
     return np.unique(np.r_[0, np.geomspace(FIRST_BAND, lines, BANDS).astype(int)])
 
 
-def log_power(lines: np.ndarray) -> np.ndarray:
-    """Return (.., band): the logarithm of the mean power of lines (.., line) in each band."""
+def _power(lines: np.ndarray) -> np.ndarray:
+    """Return (.., band): the mean power of lines (.., line) in each band."""
     edges = band_edges(lines.shape[-1])
-    power = np.add.reduceat(np.abs(lines) ** 2, edges[:-1], axis=-1) / np.diff(edges)
-    return np.log(np.maximum(power, np.finfo(float).tiny))
+    return np.add.reduceat(np.abs(lines) ** 2, edges[:-1], axis=-1) / np.diff(edges)
+
+
+def log_power(bench: Bench, lines: np.ndarray) -> np.ndarray:
+    """Return (.., stretch, channel, band): the logarithm of the mean power of lines (.., stretch,
+    channel, line) in each band and of the error of a right model.
+    """
+    shape = lines.shape[-2], len(band_edges(lines.shape[-1])) - 1
+    error = np.stack([np.broadcast_to(own.error, shape) for own in bench.stretches])
+    return np.log(np.maximum(_power(lines) + error, np.finfo(float).tiny))
 
 
 def counts(bench: Bench, lines: np.ndarray) -> np.ndarray:
@@ -227,17 +253,17 @@ def misfit(bench: Bench, lines: np.ndarray) -> float:
     constant.
 
     Gaussian lines whose level in each band is the most likely one (Whittle, with the levels
-    profiled): the number of lines times the log of their mean power. A share INDEPENDENT of the
-    lines counts. Infinite if a run failed.
+    profiled), and no less than the error of a right model: the number of lines times `log_power`.
+    A share INDEPENDENT of the lines counts. Infinite if a run failed.
     """
-    value = float(np.sum(counts(bench, lines) * log_power(lines)))
+    value = float(np.sum(counts(bench, lines) * log_power(bench, lines)))
     return INDEPENDENT * value if np.isfinite(value) else np.inf
 
 
 def mean_log_power(bench: Bench, lines: np.ndarray) -> float:
     """Return the mean over lines of the log power of their bands."""
     weight = counts(bench, lines)
-    return float(np.sum(weight * log_power(lines)) / weight.sum())
+    return float(np.sum(weight * log_power(bench, lines)) / weight.sum())
 
 
 def effective_lines(bench: Bench, lines: np.ndarray) -> float:
@@ -249,5 +275,5 @@ def whitening(bench: Bench, lines: np.ndarray) -> np.ndarray:
     """Return (stretch, channel, line): one over the RMS of the lines of each band, 0 of channels at
     rest.
     """
-    level = np.exp(-0.5 * log_power(lines))
+    level = np.exp(-0.5 * log_power(bench, lines))
     return np.repeat(level, np.diff(band_edges(lines.shape[-1])), axis=-1) * bench.moving

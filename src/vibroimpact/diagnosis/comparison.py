@@ -8,13 +8,15 @@ from functools import cached_property
 
 import numpy as np
 
+from vibroimpact.config.problems import ConfigError
 from vibroimpact.integration.contact_convergence import contact_contraction
 from vibroimpact.reduction.modal_model import ModalModel
 
-from .bench import Bench, holds
+from .bench import Bench, holds, with_model_error
+from .catalogue import NO_EFFECT, within_priors
 from .constants import HOLD_SHARES, LINEAR_HOLD, SCREENED_S, STRENGTH, STRETCH_S
 from .coordinates import Coordinate, nuisance_coordinates
-from .explanations import Structure, seen
+from .explanations import TURNED, Structure, Term, seen
 from .measurement.signals import Signals
 from .measurement.stretches import Rates, Stretch, held_band, rates_of, stretches_of, valid_samples
 from .sizes import sizes_of
@@ -91,6 +93,28 @@ class Comparison:
         """Return the numbers of the modes of the model as given that are seen in the band."""
         return np.flatnonzero(seen(self._model) & (self._model.frequencies < self.band[1]))
 
+    def within_priors(self, term: Term) -> bool:
+        """Return whether a term is no more than a good model is off by anyway; of the linear
+        structure also one that leaves every mode in the band near its place.
+        """
+        if within_priors(term, self.signals.rate, self.sizes):
+            return True
+        if not term.effect.linear or term.effect.measured or term.effect_id == TURNED:
+            return False
+        try:
+            model = self.structure.with_terms((term,))
+        except (ConfigError, ValueError):
+            return False
+        own = np.flatnonzero(seen(model))[: len(self._seen)]
+        if len(own) < len(self._seen):
+            return False
+        for name, effect in (("omega", "mode_frequency_error"), ("damping", "modal_damping")):
+            given, now = getattr(self._model, name)[self._seen], getattr(model, name)[own]
+            most = np.exp(NO_EFFECT[effect])
+            if np.any((now > most * given) | (given > most * now)):
+                return False
+        return True
+
     @property
     def resonant(self) -> frozenset[str]:
         """Return the names of the modes whose resonance is within the lines. A mode above these
@@ -108,7 +132,7 @@ class Comparison:
     @cached_property
     def across(self) -> bool:
         """Return whether sensors of more than one direction move at the highest load."""
-        moving = self.fitted().moving[-1, :, 0]
+        moving = self._bench(self._fitted).moving[-1, :, 0]
         directions = self._model.sensor_directions[moving]
         return len(directions) > 0 and int(np.linalg.matrix_rank(directions, tol=0.3)) > 1
 
@@ -131,11 +155,11 @@ class Comparison:
 
     def fitted(self) -> Bench:
         """Return the Bench that explanations are fitted on: low, middle and high loads."""
-        return self._bench(self._fitted)
+        return with_model_error(self._bench(self._fitted))
 
     def screened(self) -> Bench:
         """Return the Bench of screening: the higher loads."""
-        return self._bench(self._fitted[-SCREENED:], SCREENED_S)
+        return with_model_error(self._bench(self._fitted[-SCREENED:], SCREENED_S))
 
     def apart(self) -> Bench:
         """Return the Bench of stretches that took no part: of held-out records, and a late one of
@@ -144,9 +168,9 @@ class Comparison:
         late = self._spread(self.signals.fit(), FITTED, self._fitted)
         held_out = self.signals.holdout()
         if any(record in self._holding for record in held_out):
-            return self._bench([*self._spread(held_out, APART - 1), *late[-1:]])
+            return with_model_error(self._bench([*self._spread(held_out, APART - 1), *late[-1:]]))
         last = [(record, self._starts(record)[-1]) for record, _ in self._fitted]
-        return self._bench(late or last)
+        return with_model_error(self._bench(late or last))
 
     def lowest(self) -> Bench:
         """Return the Bench of the first stretch of each record at the lowest load."""

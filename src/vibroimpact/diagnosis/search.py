@@ -21,7 +21,7 @@ from .bench import (
     holding_lines,
     log_power,
 )
-from .catalogue import AT_A_POINT, within_priors
+from .catalogue import AT_A_POINT
 from .comparison import Comparison
 from .constants import NULL_GAIN, needed_gain
 from .coordinates import effect_coordinates
@@ -272,7 +272,7 @@ def _race(
     raced = [
         Screened(*pair)
         for pair in zip(points, map(float, gains_of(about, points)), strict=True)
-        if not within_priors(pair[0].terms[-1], at.comparison.signals.rate, sizes)
+        if not at.comparison.within_priors(pair[0].terms[-1])
         and not one_law(pair[0].terms, sizes["tube_length"])
     ]
     raced.sort(key=lambda each: -each.gain)
@@ -291,9 +291,8 @@ def _starts(at: _Benches, screened: Sequence[Screened], most: int) -> list[Point
     they are fitted, as all that takes the force off a support does: one of them would fill the
     race. And the right place may look second best, if there is a second effect.
     """
-    rate, sizes = at.comparison.signals.rate, at.comparison.sizes
     outside = (
-        each.gain for each in screened if not within_priors(each.point.terms[-1], rate, sizes)
+        each.gain for each in screened if not at.comparison.within_priors(each.point.terms[-1])
     )
     best = next(outside, 0.0)
     firsts: dict[str, Point] = {}
@@ -429,7 +428,7 @@ def _hypotheses(at: _Benches, found: Sequence[Fit], nothing: Hypothesis | None) 
 def changes(bench: Bench, before: np.ndarray, after: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return (change, lines) of a Hypothesis, from lines before and after."""
     number = counts(bench, before)
-    change = np.sum(number * (log_power(before) - log_power(after)), axis=1)
+    change = np.sum(number * (log_power(bench, before) - log_power(bench, after)), axis=1)
     return change, number.sum(axis=1).astype(float)
 
 
@@ -486,13 +485,12 @@ def _kept(at: _Benches, found: Sequence[Hypothesis], nothing: Hypothesis) -> lis
     """Return the Hypotheses that could be run and name no law twice, without the effects that are
     within the priors.
     """
-    rate, sizes = at.comparison.signals.rate, at.comparison.sizes
-    out = []
+    length, out = at.comparison.sizes["tube_length"], []
     for each in found:
         net = zip(each.point.terms, each.point.net_terms, strict=True)
-        terms = tuple(term for term, own in net if not within_priors(own, rate, sizes))
+        terms = tuple(term for term, own in net if not at.comparison.within_priors(own))
         if terms and len(terms) < len(each.point.terms):
             [each] = _finals(at, [replace(each.point, terms=terms)], nothing) or [each]
-        if terms and np.isfinite(each.gain) and not one_law(terms, sizes["tube_length"]):
+        if terms and np.isfinite(each.gain) and not one_law(terms, length):
             out.append(each)
     return out

@@ -28,6 +28,7 @@ class Stretch:
     force (step, force_channel): N. motion (step, channel): m, as displacements; 0 of channels that
     measure no motion. Both begin one step before the start, in steps of the Schedule.
     moving (channel,) bool: whether a channel moves there. hold: of the strength of the dampers.
+    error (channel, band): N², of the lines of a right model, see bench.with_model_error.
     """
 
     record: int
@@ -38,6 +39,7 @@ class Stretch:
     motion: np.ndarray
     moving: np.ndarray
     hold: float = 1.0
+    error: np.ndarray | float = 0.0
 
 
 @dataclass(frozen=True)
